@@ -1,0 +1,110 @@
+//! The product: tiles of hair and the primitives that wear them (`docs/extension/`).
+
+use super::image::Image8;
+use crate::math::{Vec2, Vec3, Vec4};
+
+/// Angles between ray and normal for which a gain is stored, degrees.
+pub const GAIN_ANGLES_DEG: [f32; 9] = [0.0, 10.0, 22.0, 35.0, 48.0, 60.0, 70.0, 79.0, 86.0];
+
+/// A furry asset's coat.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Coat {
+    /// Hair textures, shared by primitives.
+    pub tiles: Vec<Tile>,
+    /// One per furred primitive of the asset.
+    pub primitives: Vec<CoatPrimitive>,
+}
+
+/// A toroidal piece of hair with its mean lean removed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tile {
+    /// Name of the preset it was grown from.
+    pub preset: String,
+    /// Edge length that one unit of coat UV stands for, m in the world the coat was baked for.
+    pub edge_m: f32,
+    /// Height of the stack, m: the length of the longest hair's vertical reach at offset scale 1.
+    pub height_m: f32,
+    /// The shells.
+    pub shells: ShellStack,
+    /// The fin texture.
+    pub fin: FinTexture,
+}
+
+/// Shells over the opaque skin (layer 0): `layers − 1` slabs of equal height. Slab i ∈ 1 … layers−1 spans heights
+/// (i−1)/(layers−1) … i/(layers−1) of the stack and is drawn at its middle.
+///
+/// The law that gives a slab's opacity (`docs/steps/shells.md`): τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], α = 1 − e^−τ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShellStack {
+    /// Layers with the skin: textures have this many array layers.
+    pub layers: u32,
+    /// Texels along an edge of mip 0; a power of two.
+    pub size: u32,
+    /// Per mip: gains g at [`GAIN_ANGLES_DEG`].
+    pub gains: Vec<[f32; 9]>,
+    /// Per layer: mean slope (dx, dy)/dz of the hair in tile axes.
+    pub slopes: Vec<Vec2>,
+    /// The extinction that a stored 1 stands for, 1/m.
+    pub extinction_scale_per_m: f32,
+    /// RGBA8 per mip and layer (`[mip][layer]`): straight albedo in sRGB coding, and in alpha the transmittance to the
+    /// outside T₀ (linear), for rays with √(1 − (ω·m)²) = |cos θ|.
+    pub albedo: Vec<Vec<Image8>>,
+    /// RGBA8 per mip and layer: A/scale, then A·m/scale as (x, y, z)·127/255 + 128/255, linear.
+    pub medium: Vec<Vec<Image8>>,
+    /// R8 per mip and layer: 1 − e^−κ, linear.
+    pub ends: Vec<Vec<Image8>>,
+}
+
+/// A slab of hair seen along the skin: x along the edge (toroidal), rows from the tips (0) to the roots.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FinTexture {
+    /// Texels along the edge direction and along the hair, of mip 0.
+    pub size: [u32; 2],
+    /// How much edge one unit of u stands for, m.
+    pub width_m: f32,
+    /// Thickness of the slab that was composited, m; an edge's own thickness scales optical depth.
+    pub thickness_m: f32,
+    /// RGBA8 per mip: straight albedo in sRGB coding, opacity (linear).
+    pub albedo: Vec<Image8>,
+    /// RGBA8 per mip: mean tangent (along the edge, across it, up)·127/255 + 128/255, transmittance to the outside.
+    pub tangent: Vec<Image8>,
+}
+
+/// What one primitive of the asset wears. Arrays have one entry per coat vertex.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CoatPrimitive {
+    /// glTF mesh.
+    pub mesh: usize,
+    /// Primitive of that mesh.
+    pub primitive: usize,
+    /// Tile it wears.
+    pub tile: usize,
+    /// Vertex of the base primitive that carries position, skin and morph data.
+    pub base_vertex: Vec<u32>,
+    /// Texture coordinate in tiles.
+    pub uv: Vec<Vec2>,
+    /// Patch, chart or island the vertex belongs to.
+    pub patch: Vec<u32>,
+    /// Root to the top of the stack, in the base primitive's own space and units.
+    pub offset: Vec<Vec3>,
+    /// Colour factor (linear RGB) and density factor.
+    pub tint: Vec<Vec4>,
+    /// Coat vertex indices, counter-clockwise from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Edges that may carry a fin.
+    pub fins: Vec<FinEdge>,
+}
+
+/// An edge of the coat with the faces beside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FinEdge {
+    /// Coat vertices of its ends.
+    pub ends: [u32; 2],
+    /// Coat vertices opposite to the edge in its two faces, from which both face normals follow under any
+    /// deformation; equal where the edge is a border.
+    pub opposite: [u32; 2],
+    /// Interval of the fin texture.
+    pub u: [f32; 2],
+    /// Thickness of hair that this fin stands for over the texture's, so that all fins together hold the coat once.
+    pub thickness: f32,
+}

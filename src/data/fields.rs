@@ -1,0 +1,21 @@
+//! What varies over the skin: one value per vertex of a [`super::mesh::Mesh`].
+
+use crate::math::Vec3;
+
+/// The groom's fields on a mesh. All arrays have one entry per vertex.
+#[derive(Clone, Debug, Default)]
+pub struct Fields {
+    /// Hair length over the preset's, 0 for bare skin.
+    pub length: Vec<f32>,
+    /// Hair density over the preset's, 0 for bare skin.
+    pub density: Vec<f32>,
+    /// Comb direction: tangent unit vector in world axes, or zero where the hair has none.
+    pub direction: Vec<Vec3>,
+    /// Hair vector: root to tip of the mean guard hair at length 1, over its length; unit length, world axes. Holds
+    /// the lean that comb and gravity give; the normal where there is none.
+    pub lean: Vec<Vec3>,
+    /// Clump strength over the preset's.
+    pub clump: Vec<f32>,
+    /// Hair colour under the root, linear RGB.
+    pub tint: Vec<Vec3>,
+}

@@ -1,0 +1,54 @@
+//! What the renderer fills: linear, with alpha, one array per layer.
+
+use crate::math::Vec3;
+
+/// An image with the layers a bake and an EXR need; every array has `width * height` entries, rows from the top.
+///
+/// Colour-like layers (`radiance`, `albedo`, `tangent`, `normal`) are premultiplied by `alpha`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Film {
+    /// Pixels per row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Light towards the eye, linear RGB.
+    pub radiance: Vec<Vec3>,
+    /// Coverage in [0, 1]: 1 − transmittance.
+    pub alpha: Vec<f32>,
+    /// Mean distance along the ray of what was hit, weighted as alpha, m; 0 where alpha is 0.
+    pub depth_m: Vec<f32>,
+    /// Diffuse colour of what was hit, linear RGB.
+    pub albedo: Vec<Vec3>,
+    /// Hair direction root to tip.
+    pub tangent: Vec<Vec3>,
+    /// Skin normal where skin was hit, else zero.
+    pub normal: Vec<Vec3>,
+    /// The part of alpha that guard hair gave.
+    pub guard: Vec<f32>,
+    /// The part of alpha that undercoat gave.
+    pub undercoat: Vec<f32>,
+}
+
+impl Film {
+    /// A film of zeros.
+    pub fn new(width: usize, height: usize) -> Self {
+        let n = width * height;
+        Self {
+            width,
+            height,
+            radiance: vec![Vec3::ZERO; n],
+            alpha: vec![0.0; n],
+            depth_m: vec![0.0; n],
+            albedo: vec![Vec3::ZERO; n],
+            tangent: vec![Vec3::ZERO; n],
+            normal: vec![Vec3::ZERO; n],
+            guard: vec![0.0; n],
+            undercoat: vec![0.0; n],
+        }
+    }
+
+    /// Coverage: mean alpha.
+    pub fn coverage(&self) -> f64 {
+        self.alpha.iter().map(|&a| f64::from(a)).sum::<f64>() / self.alpha.len().max(1) as f64
+    }
+}

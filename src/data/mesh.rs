@@ -1,0 +1,143 @@
+//! The skin that fur grows on.
+
+use crate::error::{Error, Result};
+use crate::math::{DVec3, Vec2, Vec3, Vec4};
+use std::collections::HashMap;
+
+/// A triangle mesh in metres, world axes (+Y up), rest pose, relative to `origin_m`.
+///
+/// Vertex arrays have one entry per vertex; optional ones are absent or just as long.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Where (0, 0, 0) of `positions_m` lies in the world, so that f32 stays precise far from it.
+    pub origin_m: DVec3,
+    /// Vertex positions, m.
+    pub positions_m: Vec<Vec3>,
+    /// Unit vertex normals.
+    pub normals: Vec<Vec3>,
+    /// Vertex indices, counter-clockwise from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Which vertices are one point: the smallest index of a vertex at the same place, across UV and normal seams.
+    pub position_class: Vec<u32>,
+    /// Texture coordinate sets, in the asset's order.
+    pub uv_sets: Vec<Vec<Vec2>>,
+    /// `COLOR_0`, linear RGBA.
+    pub colour: Option<Vec<Vec4>>,
+    /// `_FUR_LENGTH`: multiplies the preset's hair length.
+    pub fur_length: Option<Vec<f32>>,
+    /// `_FUR_DIRECTION`: comb direction in world axes; need be neither unit nor tangent.
+    pub fur_direction: Option<Vec<Vec3>>,
+}
+
+impl Mesh {
+    /// Checks lengths, index ranges and finiteness of what every later step relies on.
+    ///
+    /// # Errors
+    /// Names the array and the index of the first fault.
+    pub fn checked(self) -> Result<Self> {
+        let vertices = self.positions_m.len();
+        let fault = |field: &str, found: String, expected: &str| {
+            Err(Error::input("the mesh is not consistent").with_field(field).with_found(found).with_expected(expected))
+        };
+        if self.normals.len() != vertices || self.position_class.len() != vertices {
+            return fault("normals", format!("{} entries", self.normals.len()), "one entry per vertex");
+        }
+        if let Some(i) = self.positions_m.iter().position(|p| !p.is_finite()) {
+            return fault(&format!("positions[{i}]"), self.positions_m[i].to_string(), "finite numbers");
+        }
+        if let Some(i) = self.normals.iter().position(|n| (n.length_squared() - 1.0).abs().partial_cmp(&1e-3) != Some(std::cmp::Ordering::Less)) {
+            return fault(&format!("normals[{i}]"), self.normals[i].to_string(), "unit length");
+        }
+        if let Some(i) = self.triangles.iter().flatten().position(|&v| v as usize >= vertices) {
+            return fault(&format!("triangles[{}]", i / 3), "an index past the last vertex".into(), "indices below the vertex count");
+        }
+        Ok(self)
+    }
+
+    /// The three corners of triangle `t`, m.
+    pub fn corners_m(&self, t: usize) -> [Vec3; 3] {
+        self.triangles[t].map(|v| self.positions_m[v as usize])
+    }
+
+    /// Twice the area of triangle `t` times its unit normal, m².
+    pub fn area_vector_m2(&self, t: usize) -> Vec3 {
+        let [a, b, c] = self.corners_m(t);
+        (b - a).cross(c - a)
+    }
+
+    /// Area of triangle `t`, m².
+    pub fn area_m2(&self, t: usize) -> f32 {
+        0.5 * self.area_vector_m2(t).length()
+    }
+
+    /// Unit normals summed over the triangles around each vertex, weighted by area, one per vertex, shared across its
+    /// position class, so that what is extruded along them does not crack at seams.
+    pub fn smooth_normals(&self) -> Vec<Vec3> {
+        let mut sums = vec![Vec3::ZERO; self.positions_m.len()];
+        for (t, triangle) in self.triangles.iter().enumerate() {
+            let area_vector = self.area_vector_m2(t);
+            for &v in triangle {
+                sums[self.position_class[v as usize] as usize] += area_vector;
+            }
+        }
+        self.position_class
+            .iter()
+            .enumerate()
+            .map(|(v, &class)| {
+                let n = sums[class as usize].normalize_or_zero();
+                if n == Vec3::ZERO { self.normals[v] } else { n }
+            })
+            .collect()
+    }
+
+    /// Length of the bounding box's diagonal, m; 0 for an empty mesh.
+    pub fn diagonal_m(&self) -> f32 {
+        let (low, high) = self.bounds_m();
+        if self.positions_m.is_empty() { 0.0 } else { (high - low).length() }
+    }
+
+    /// Lowest and highest corner of the bounding box, m.
+    pub fn bounds_m(&self) -> (Vec3, Vec3) {
+        self.positions_m
+            .iter()
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
+    }
+}
+
+/// Groups vertices closer than about `tolerance` into classes: the smallest index of each group.
+///
+/// Vertices are snapped to a grid and joined with the groups of the neighbouring cells, so two points just either
+/// side of a cell wall still meet. With `tolerance` 0 only bitwise equal points (and ±0) meet.
+pub fn position_classes(positions: &[Vec3], tolerance: f32) -> Vec<u32> {
+    let cell_size = f64::from(tolerance) * 2.0;
+    let cell = |p: Vec3| -> [i64; 3] {
+        if tolerance > 0.0 {
+            (p.as_dvec3() / cell_size).floor().to_array().map(|c| c as i64)
+        } else {
+            (p + Vec3::ZERO).to_array().map(|c| i64::from(c.to_bits()))
+        }
+    };
+    let mut first_in_cell: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+    let mut classes = Vec::with_capacity(positions.len());
+    for (i, &p) in positions.iter().enumerate() {
+        let home = cell(p);
+        let mut class = i as u32;
+        let reach = i64::from(tolerance > 0.0);
+        'search: for dx in -reach..=reach {
+            for dy in -reach..=reach {
+                for dz in -reach..=reach {
+                    let Some(members) = first_in_cell.get(&[home[0].saturating_add(dx), home[1].saturating_add(dy), home[2].saturating_add(dz)]) else { continue };
+                    if let Some(&found) = members.iter().find(|&&m| positions[m as usize].distance_squared(p) <= tolerance * tolerance) {
+                        class = classes[found as usize];
+                        break 'search;
+                    }
+                }
+            }
+        }
+        classes.push(class);
+        if class == i as u32 {
+            first_in_cell.entry(home).or_default().push(class);
+        }
+    }
+    classes
+}

@@ -1,0 +1,8 @@
+//! Floor 1: the plain data that one step hands to the next. Checked once, at construction.
+
+pub mod coat;
+pub mod fields;
+pub mod film;
+pub mod image;
+pub mod mesh;
+pub mod strands;

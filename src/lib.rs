@@ -1,0 +1,9 @@
+//! Furrier bakes fur for games: a mesh and a preset in, the same asset with shells and fins out, and how far off it is.
+//!
+//! The folders are the pipeline, read top to bottom in `docs/architecture.md`; a file imports only from lower floors.
+
+pub mod data;
+pub mod error;
+pub mod math;
+
+pub use error::{Error, Result};
