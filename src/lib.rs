@@ -2,8 +2,11 @@
 //!
 //! The folders are the pipeline, read top to bottom in `docs/architecture.md`; a file imports only from lower floors.
 
+pub mod coat;
 pub mod data;
 pub mod error;
+pub mod fur;
 pub mod math;
+pub mod preset;
 
 pub use error::{Error, Result};

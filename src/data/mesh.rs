@@ -45,11 +45,19 @@ impl Mesh {
         if let Some(i) = self.positions_m.iter().position(|p| !p.is_finite()) {
             return fault(&format!("positions[{i}]"), self.positions_m[i].to_string(), "finite numbers");
         }
-        if let Some(i) = self.normals.iter().position(|n| (n.length_squared() - 1.0).abs().partial_cmp(&1e-3) != Some(std::cmp::Ordering::Less)) {
+        if let Some(i) = self
+            .normals
+            .iter()
+            .position(|n| (n.length_squared() - 1.0).abs().partial_cmp(&1e-3) != Some(std::cmp::Ordering::Less))
+        {
             return fault(&format!("normals[{i}]"), self.normals[i].to_string(), "unit length");
         }
         if let Some(i) = self.triangles.iter().flatten().position(|&v| v as usize >= vertices) {
-            return fault(&format!("triangles[{}]", i / 3), "an index past the last vertex".into(), "indices below the vertex count");
+            return fault(
+                &format!("triangles[{}]", i / 3),
+                "an index past the last vertex".into(),
+                "indices below the vertex count",
+            );
         }
         Ok(self)
     }
@@ -98,9 +106,7 @@ impl Mesh {
 
     /// Lowest and highest corner of the bounding box, m.
     pub fn bounds_m(&self) -> (Vec3, Vec3) {
-        self.positions_m
-            .iter()
-            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
+        self.positions_m.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
     }
 }
 
@@ -126,8 +132,16 @@ pub fn position_classes(positions: &[Vec3], tolerance: f32) -> Vec<u32> {
         'search: for dx in -reach..=reach {
             for dy in -reach..=reach {
                 for dz in -reach..=reach {
-                    let Some(members) = first_in_cell.get(&[home[0].saturating_add(dx), home[1].saturating_add(dy), home[2].saturating_add(dz)]) else { continue };
-                    if let Some(&found) = members.iter().find(|&&m| positions[m as usize].distance_squared(p) <= tolerance * tolerance) {
+                    let Some(members) = first_in_cell.get(&[
+                        home[0].saturating_add(dx),
+                        home[1].saturating_add(dy),
+                        home[2].saturating_add(dz),
+                    ]) else {
+                        continue;
+                    };
+                    if let Some(&found) =
+                        members.iter().find(|&&m| positions[m as usize].distance_squared(p) <= tolerance * tolerance)
+                    {
                         class = classes[found as usize];
                         break 'search;
                     }

@@ -1,0 +1,4 @@
+//! Floor 5: the product. Shells and fins are baked by asking [`crate::render`] and judged by asking [`crate::runtime`].
+
+pub mod fins;
+pub mod shells;

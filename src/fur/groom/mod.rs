@@ -1,0 +1,209 @@
+//! The parameters of a coat's hair. One definition serves presets, defaults and help.
+
+use crate::math::Vec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A length in a preset.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase", deny_unknown_fields)]
+pub enum Length {
+    /// Millimetres on the animal described.
+    Mm(f32),
+    /// Share of the mesh's bounding diagonal.
+    Relative(f32),
+}
+
+impl Length {
+    /// In metres, for a mesh whose bounding diagonal is `diagonal_m`.
+    pub fn metres(self, diagonal_m: f32) -> f32 {
+        match self {
+            Self::Mm(mm) => mm * 1e-3,
+            Self::Relative(share) => share * diagonal_m,
+        }
+    }
+}
+
+/// Helical curl: the hair winds around its own axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Curl {
+    /// Radius of the helix, mm, 0 for straight hair.
+    pub radius_mm: f32,
+    /// Windings from root to tip.
+    pub turns: f32,
+}
+
+/// Hairs that lean together into cones.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Clump {
+    /// Mean distance between clump centres, mm.
+    pub spacing_mm: f32,
+    /// How far tips move towards their clump's centre, in [0, 1].
+    pub strength: f32,
+}
+
+/// How one kind of hair departs from a straight line along its lean.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Shape {
+    /// Standard deviation of length over its mean, in [0, 0.5].
+    pub length_variation: f32,
+    /// How much more the tip leans along the comb than the root, degrees in [0, 120].
+    pub bend_deg: f32,
+    /// Standard deviation of each hair's own lean in both tangent directions, degrees in [0, 45].
+    pub jitter_deg: f32,
+    /// Sideways wander between root and tip over length, in [0, 0.5].
+    pub noise: f32,
+    /// Helix.
+    pub curl: Curl,
+    /// Cones.
+    pub clump: Clump,
+}
+
+/// Guard hair: the long, thick hairs that are seen one by one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Guard {
+    /// Hairs per cm² of skin, 0 for none.
+    pub density_per_cm2: f32,
+    /// Mean length along the hair.
+    pub length: Length,
+    /// Diameter at the root, µm.
+    pub diameter_um: f32,
+    /// Diameter at the tip over that at the root, in [0, 1].
+    pub taper: f32,
+    /// Transparency at the very tip, in [0, 1]; grows exponentially along the hair.
+    pub tip_transparency: f32,
+    /// Shape.
+    pub shape: Shape,
+}
+
+/// Undercoat: the fine, dense hairs that are seen as a volume.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Undercoat {
+    /// Hairs per cm² of skin, 0 for none.
+    pub density_per_cm2: f32,
+    /// Mean length along the hair.
+    pub length: Length,
+    /// Diameter, µm.
+    pub diameter_um: f32,
+    /// Shape.
+    pub shape: Shape,
+}
+
+/// Where the comb direction comes from when neither mesh nor map gives one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Comb {
+    /// Hair stands along the normal.
+    Upright,
+    /// Towards the ground.
+    Gravity,
+    /// From head to tail: along −z, the rear of a glTF model, and a little down.
+    Tailward,
+}
+
+/// How hair lies on the skin.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Groom {
+    /// Direction of the comb.
+    pub comb: Comb,
+    /// Mean lean away from the normal along the comb, degrees in [0, 75].
+    pub lean_deg: f32,
+    /// How far gravity pulls the lean towards the ground, in [0, 1].
+    pub gravity: f32,
+}
+
+/// Colour of hair and skin, linear RGB in [0, 1].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Colour {
+    /// Hair colour where the mesh gives none (base-colour texture, factor or vertex colours).
+    pub tint: [f32; 3],
+    /// Factors along a guard hair: root, middle, tip.
+    pub guard: [[f32; 3]; 3],
+    /// Factors along an undercoat hair: root, middle, tip.
+    pub undercoat: [[f32; 3]; 3],
+    /// Relative spread of brightness from hair to hair, in [0, 1].
+    pub variation: f32,
+    /// Factor on the tint for the skin under the hair.
+    pub skin: [f32; 3],
+}
+
+impl Default for Curl {
+    fn default() -> Self {
+        Self { radius_mm: 0.0, turns: 0.0 }
+    }
+}
+
+impl Default for Clump {
+    fn default() -> Self {
+        Self { spacing_mm: 2.5, strength: 0.0 }
+    }
+}
+
+impl Default for Shape {
+    fn default() -> Self {
+        Self {
+            length_variation: 0.1,
+            bend_deg: 0.0,
+            jitter_deg: 4.0,
+            noise: 0.0,
+            curl: Curl::default(),
+            clump: Clump::default(),
+        }
+    }
+}
+
+impl Default for Guard {
+    fn default() -> Self {
+        Self {
+            density_per_cm2: 400.0,
+            length: Length::Mm(10.0),
+            diameter_um: 80.0,
+            taper: 0.25,
+            tip_transparency: 0.0,
+            shape: Shape::default(),
+        }
+    }
+}
+
+impl Default for Undercoat {
+    fn default() -> Self {
+        Self { density_per_cm2: 10_000.0, length: Length::Mm(5.0), diameter_um: 15.0, shape: Shape::default() }
+    }
+}
+
+impl Default for Groom {
+    fn default() -> Self {
+        Self { comb: Comb::Tailward, lean_deg: 35.0, gravity: 0.1 }
+    }
+}
+
+impl Default for Colour {
+    fn default() -> Self {
+        Self {
+            tint: [0.35, 0.22, 0.12],
+            guard: [[0.6; 3], [0.9; 3], [1.0; 3]],
+            undercoat: [[0.7; 3], [0.8; 3], [0.9; 3]],
+            variation: 0.2,
+            skin: [0.5; 3],
+        }
+    }
+}
+
+impl Colour {
+    /// The ramp of guard hair as vectors.
+    pub fn guard_ramp(&self) -> [Vec3; 3] {
+        self.guard.map(Vec3::from)
+    }
+
+    /// The ramp of undercoat as vectors.
+    pub fn undercoat_ramp(&self) -> [Vec3; 3] {
+        self.undercoat.map(Vec3::from)
+    }
+}
