@@ -1,3 +1,4 @@
 //! Floor 3: the model of the coat: how hair is shaped, where it grows, how dense its undercoat is.
 
 pub mod groom;
+pub mod grow;

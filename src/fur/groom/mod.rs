@@ -1,5 +1,9 @@
 //! The parameters of a coat's hair. One definition serves presets, defaults and help.
 
+pub mod clump;
+pub mod fibre;
+pub mod hair;
+
 use crate::math::Vec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
