@@ -8,5 +8,6 @@ pub mod error;
 pub mod fur;
 pub mod math;
 pub mod preset;
+pub mod render;
 
 pub use error::{Error, Result};

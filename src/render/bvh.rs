@@ -1,0 +1,198 @@
+//! A bounding volume hierarchy over boxes: binned surface-area heuristic (Wald 2007), depth-first nodes.
+
+use crate::math::Vec3;
+
+const LEAF_SIZE: usize = 4;
+const BINS: usize = 12;
+
+/// A node: a leaf where `count > 0`, whose items are `first … first + count`; else its children are the next node and
+/// node `first`.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    low: Vec3,
+    first: u32,
+    high: Vec3,
+    count: u32,
+}
+
+/// The hierarchy. Items are referred to by their index at construction.
+#[derive(Clone, Debug, Default)]
+pub struct Bvh {
+    nodes: Vec<Node>,
+    items: Vec<u32>,
+}
+
+struct Build<'a> {
+    bounds: &'a [(Vec3, Vec3)],
+    nodes: Vec<Node>,
+    items: Vec<u32>,
+}
+
+impl Bvh {
+    /// Builds over boxes (lowest, highest corner).
+    pub fn new(bounds: &[(Vec3, Vec3)]) -> Self {
+        let mut build = Build { bounds, nodes: Vec::new(), items: (0..bounds.len() as u32).collect() };
+        if !bounds.is_empty() {
+            build.split(0, bounds.len());
+        }
+        Self { nodes: build.nodes, items: build.items }
+    }
+
+    /// Lowest and highest corner of all items; none when there is no item.
+    pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
+        self.nodes.first().map(|n| (n.low, n.high))
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.nodes.len() * size_of::<Node>() + self.items.len() * 4
+    }
+
+    /// Calls `visit(item, far)` for every item whose box meets the ray between `near` and the returned `far`, which
+    /// `visit` may shorten. Nearer boxes come first, roughly.
+    pub fn traverse(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        near: f32,
+        mut far: f32,
+        mut visit: impl FnMut(u32, f32) -> f32,
+    ) {
+        if self.nodes.is_empty() {
+            return;
+        }
+        let inverse = direction.recip();
+        let meets = |node: &Node, far: f32| {
+            let (a, b) = ((node.low - origin) * inverse, (node.high - origin) * inverse);
+            // min/max drop the NaN of 0 · ∞: a ray inside a slab's plane stays possible.
+            let enter = a.min(b).max_element().max(near);
+            let leave = a.max(b).min_element().min(far);
+            (enter <= leave).then_some(enter)
+        };
+        let mut stack = [0_u32; 64];
+        let mut depth = 0;
+        let mut index = 0_usize;
+        if meets(&self.nodes[0], far).is_none() {
+            return;
+        }
+        loop {
+            let node = &self.nodes[index];
+            if node.count > 0 {
+                for &item in &self.items[node.first as usize..(node.first + node.count) as usize] {
+                    far = visit(item, far);
+                }
+            } else {
+                let (left, right) = (index + 1, node.first as usize);
+                match (meets(&self.nodes[left], far), meets(&self.nodes[right], far)) {
+                    (Some(l), Some(r)) => {
+                        let (next, later) = if l <= r { (left, right) } else { (right, left) };
+                        stack[depth] = later as u32;
+                        depth += 1;
+                        index = next;
+                        continue;
+                    }
+                    (Some(_), None) => {
+                        index = left;
+                        continue;
+                    }
+                    (None, Some(_)) => {
+                        index = right;
+                        continue;
+                    }
+                    (None, None) => {}
+                }
+            }
+            // Boxes put aside may lie past a `far` that has come nearer since.
+            loop {
+                if depth == 0 {
+                    return;
+                }
+                depth -= 1;
+                index = stack[depth] as usize;
+                if meets(&self.nodes[index], far).is_some() {
+                    break;
+                }
+            }
+        }
+    }
+}
+
+impl Build<'_> {
+    fn split(&mut self, begin: usize, end: usize) {
+        let mut low = Vec3::INFINITY;
+        let mut high = Vec3::NEG_INFINITY;
+        let mut centre_low = Vec3::INFINITY;
+        let mut centre_high = Vec3::NEG_INFINITY;
+        for &i in &self.items[begin..end] {
+            let (l, h) = self.bounds[i as usize];
+            low = low.min(l);
+            high = high.max(h);
+            centre_low = centre_low.min(l + h);
+            centre_high = centre_high.max(l + h);
+        }
+        let me = self.nodes.len();
+        self.nodes.push(Node { low, first: begin as u32, high, count: (end - begin) as u32 });
+        // Depth stays below the stack's 64: past 48 levels halves are forced, by then of few items.
+        if end - begin <= LEAF_SIZE {
+            return;
+        }
+        let extent = centre_high - centre_low;
+        let axis = if extent.x >= extent.y && extent.x >= extent.z {
+            0
+        } else if extent.y >= extent.z {
+            1
+        } else {
+            2
+        };
+        let middle = self.partition(begin, end, axis, centre_low[axis], extent[axis]);
+        self.nodes[me].count = 0;
+        self.split(begin, middle);
+        self.nodes[me].first = self.nodes.len() as u32;
+        self.split(middle, end);
+    }
+
+    /// Reorders the items and returns where the second half begins.
+    fn partition(&mut self, begin: usize, end: usize, axis: usize, low: f32, extent: f32) -> usize {
+        let bounds = self.bounds;
+        let centre = |i: u32| bounds[i as usize].0[axis] + bounds[i as usize].1[axis];
+        let bin = |i: u32| (((centre(i) - low) / extent * BINS as f32) as usize).min(BINS - 1);
+        let half = (begin + end) / 2;
+        if extent > 0.0 {
+            let mut boxes = [(Vec3::INFINITY, Vec3::NEG_INFINITY, 0_usize); BINS];
+            for &i in &self.items[begin..end] {
+                let entry = &mut boxes[bin(i)];
+                let (l, h) = bounds[i as usize];
+                *entry = (entry.0.min(l), entry.1.max(h), entry.2 + 1);
+            }
+            let sweep = |order: &mut dyn Iterator<Item = usize>| {
+                let mut all = (Vec3::INFINITY, Vec3::NEG_INFINITY, 0);
+                let mut cost = [0.0_f32; BINS];
+                for b in order {
+                    all = (all.0.min(boxes[b].0), all.1.max(boxes[b].1), all.2 + boxes[b].2);
+                    let d = (all.1 - all.0).max(Vec3::ZERO);
+                    cost[b] = (d.x * d.y + d.y * d.z + d.z * d.x) * all.2 as f32;
+                }
+                cost
+            };
+            let left = sweep(&mut (0..BINS));
+            let right = sweep(&mut (0..BINS).rev());
+            let best = (0..BINS - 1).min_by(|&x, &y| (left[x] + right[x + 1]).total_cmp(&(left[y] + right[y + 1])));
+            let items = &mut self.items[begin..end];
+            let split = best.unwrap_or(0);
+            let mut middle = 0;
+            for k in 0..items.len() {
+                if bin(items[k]) <= split {
+                    items.swap(k, middle);
+                    middle += 1;
+                }
+            }
+            // A lopsided split could grow deeper than the traversal stack: keep at least an eighth on each side.
+            if middle.min(items.len() - middle) * 8 >= items.len() {
+                return begin + middle;
+            }
+        }
+        self.items[begin..end]
+            .select_nth_unstable_by(half - begin, |&x, &y| centre(x).total_cmp(&centre(y)).then(x.cmp(&y)));
+        half
+    }
+}

@@ -1,0 +1,296 @@
+//! Renders single hairs by casting rays through a hierarchy of their pieces: every crossing found, sorted by (depth,
+//! id), composited front to back. Slow and plain, with no resolution of its own.
+
+use super::bvh::Bvh;
+use super::cone::Cone;
+use super::rays::{Ray, Rays};
+use super::{DepthRange, Scene};
+use crate::data::film::Film;
+use crate::data::strands::Strands;
+use crate::math::Vec3;
+use rayon::prelude::*;
+
+/// Transmittance below which nothing behind can be seen.
+const OPAQUE: f32 = 1e-4;
+
+/// What a ray crosses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Surface {
+    /// A hair of set 0 (guard) or 1 (undercoat), and where along it.
+    Hair { set: u8, strand: u32, segment: u32, s: f32 },
+    /// The skin.
+    Skin { triangle: u32 },
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    depth_m: f32,
+    alpha: f32,
+    surface: Surface,
+}
+
+/// What one ray sees; colour-like values are premultiplied by alpha.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Seen {
+    /// 1 − transmittance.
+    pub alpha: f32,
+    /// Part of alpha from guard hair.
+    pub guard: f32,
+    /// Part of alpha from undercoat.
+    pub undercoat: f32,
+    /// Depth × alpha, m.
+    pub depth_m: f32,
+    /// Colour × alpha.
+    pub albedo: Vec3,
+    /// Hair direction × alpha.
+    pub tangent: Vec3,
+    /// Skin normal × alpha.
+    pub normal: Vec3,
+}
+
+/// A scene made ready for rays.
+pub struct Caster<'a> {
+    scene: Scene<'a>,
+    bvh: Bvh,
+    /// Index of the first piece of undercoat, and of the first triangle.
+    starts: [usize; 2],
+}
+
+fn pieces(strands: Option<&Strands>) -> usize {
+    strands.map_or(0, |s| s.len() * (s.points_per_strand - 1))
+}
+
+fn cone(strands: &Strands, piece: usize) -> (usize, usize, Cone) {
+    let segments = strands.points_per_strand - 1;
+    let (strand, segment) = (piece / segments, piece % segments);
+    let points = strands.points_of_m(strand);
+    let radius_m = |i: usize| strands.root_radius_m[strand] * strands.profile.radius_factor(i as f32 / segments as f32);
+    let cone = Cone {
+        from_m: points[segment],
+        to_m: points[segment + 1],
+        from_radius_m: radius_m(segment),
+        to_radius_m: radius_m(segment + 1),
+    };
+    (strand, segment, cone)
+}
+
+impl<'a> Caster<'a> {
+    /// Builds the hierarchy.
+    pub fn new(scene: Scene<'a>) -> Self {
+        let starts = [pieces(scene.guard), pieces(scene.guard) + pieces(scene.undercoat)];
+        let mut bounds = Vec::with_capacity(starts[1]);
+        for strands in [scene.guard, scene.undercoat].into_iter().flatten() {
+            bounds.par_extend((0..pieces(Some(strands))).into_par_iter().map(|i| cone(strands, i).2.bounds_m()));
+        }
+        if let Some(skin) = scene.skin {
+            bounds.extend((0..skin.triangles.len()).map(|t| {
+                let [a, b, c] = skin.corners_m(t);
+                (a.min(b).min(c), a.max(b).max(c))
+            }));
+        }
+        Self { scene, bvh: Bvh::new(&bounds), starts }
+    }
+
+    /// Fills a film.
+    pub fn render(&self, rays: &Rays<'_>, range: DepthRange) -> Film {
+        let [width, height] = rays.size();
+        let per_pixel = rays.per_pixel();
+        let rows: Vec<Vec<Seen>> = (0..height)
+            .into_par_iter()
+            .map_init(Vec::new, |crossings, y| {
+                let pixel = |x: usize, crossings: &mut Vec<Crossing>| {
+                    let mut sum = Seen::default();
+                    for sample in 0..per_pixel {
+                        sum.add(&self.look(&rays.ray(x, y, sample), range, crossings));
+                    }
+                    sum.scaled(1.0 / per_pixel as f32)
+                };
+                (0..width).map(|x| pixel(x, crossings)).collect()
+            })
+            .collect();
+        let mut film = Film::new(width, height);
+        for (i, seen) in rows.into_iter().flatten().enumerate() {
+            film.alpha[i] = seen.alpha;
+            film.depth_m[i] = if seen.alpha > 0.0 { seen.depth_m / seen.alpha } else { 0.0 };
+            film.albedo[i] = seen.albedo;
+            film.tangent[i] = seen.tangent;
+            film.normal[i] = seen.normal;
+            film.guard[i] = seen.guard;
+            film.undercoat[i] = seen.undercoat;
+        }
+        film
+    }
+
+    /// Mean transmittance of each ray of a film, without its layers: quicker than [`Self::render`].
+    pub fn mean_transmittance(&self, rays: &Rays<'_>, range: DepthRange) -> f64 {
+        let [width, height] = rays.size();
+        let rows: Vec<f64> = (0..height)
+            .into_par_iter()
+            .map_init(Vec::new, |crossings, y| {
+                let of_pixel = |x: usize, crossings: &mut Vec<Crossing>| -> f64 {
+                    (0..rays.per_pixel())
+                        .map(|sample| f64::from(1.0 - self.look(&rays.ray(x, y, sample), range, crossings).alpha))
+                        .sum()
+                };
+                (0..width).map(|x| of_pixel(x, crossings)).sum()
+            })
+            .collect();
+        rows.iter().sum::<f64>() / (width * height * rays.per_pixel()) as f64
+    }
+
+    fn look(&self, ray: &Ray, range: DepthRange, crossings: &mut Vec<Crossing>) -> Seen {
+        crossings.clear();
+        self.collect(ray, range, crossings);
+        // Depth first, then kind and source index: equal depths composite alike in any order of discovery.
+        crossings.sort_unstable_by(|a, b| {
+            a.depth_m.total_cmp(&b.depth_m).then_with(|| self.key(&a.surface).cmp(&self.key(&b.surface)))
+        });
+        let mut seen = Seen::default();
+        let mut through = 1.0_f32;
+        let mut last: Option<(u8, u32)> = None;
+        for crossing in crossings.iter() {
+            // Neighbouring pieces of one hair overlap at their joint: the hair counts once.
+            let hair = match crossing.surface {
+                Surface::Hair { set, strand, .. } => Some((set, strand)),
+                Surface::Skin { .. } => None,
+            };
+            if hair.is_some() && hair == last {
+                continue;
+            }
+            last = hair;
+            let weight = through * crossing.alpha;
+            self.shade(crossing, weight, &mut seen);
+            through *= 1.0 - crossing.alpha;
+            if through < OPAQUE {
+                through = 0.0;
+                break;
+            }
+        }
+        seen.alpha = 1.0 - through;
+        seen
+    }
+
+    fn key(&self, surface: &Surface) -> (u8, u32, u32) {
+        match *surface {
+            Surface::Hair { set, strand, segment, .. } => (set, self.strands(set).id[strand as usize], segment),
+            Surface::Skin { triangle } => (2, triangle, 0),
+        }
+    }
+
+    fn strands(&self, set: u8) -> &'a Strands {
+        let strands = if set == 0 { self.scene.guard } else { self.scene.undercoat };
+        strands.unwrap_or_else(|| unreachable!("a crossing names a set that is there"))
+    }
+
+    fn shade(&self, crossing: &Crossing, weight: f32, seen: &mut Seen) {
+        seen.depth_m += weight * crossing.depth_m;
+        match crossing.surface {
+            Surface::Hair { set, strand, segment, s } => {
+                let strands = self.strands(set);
+                let points = strands.points_of_m(strand as usize);
+                let along = (points[segment as usize + 1] - points[segment as usize]).normalize_or_zero();
+                let colour = strands.tint[strand as usize] * strands.profile.ramp_at(s);
+                seen.albedo += weight * colour;
+                seen.tangent += weight * along;
+                *(if set == 0 { &mut seen.guard } else { &mut seen.undercoat }) += weight;
+            }
+            Surface::Skin { triangle } => {
+                let normal = self.scene.skin.map_or(Vec3::Z, |m| m.area_vector_m2(triangle as usize));
+                seen.normal += weight * normal.normalize_or_zero();
+            }
+        }
+    }
+
+    /// All crossings in front of the first opaque one.
+    fn collect(&self, ray: &Ray, range: DepthRange, crossings: &mut Vec<Crossing>) {
+        let Some((low, high)) = self.bvh.bounds() else { return };
+        let Some(edge) = self.scene.torus_m else {
+            self.collect_image(ray, range.near_m, range.far_m, crossings);
+            return;
+        };
+        // The images of the tile that the ray passes over, nearest first.
+        let ends = [ray.origin_m + ray.direction * range.near_m, ray.origin_m + ray.direction * range.far_m];
+        let span = |axis: usize| {
+            let (a, b) = (ends[0][axis].min(ends[1][axis]), ends[0][axis].max(ends[1][axis]));
+            let first = ((a - high[axis]) / edge).ceil() as i32;
+            let last = ((b - low[axis]) / edge).floor() as i32;
+            let forward = ray.direction[axis] >= 0.0;
+            (first..=last).map(move |i| if forward { i } else { first + last - i })
+        };
+        let mut far = range.far_m;
+        for ix in span(0) {
+            for iy in span(1) {
+                let shift = Vec3::new(ix as f32 * edge, iy as f32 * edge, 0.0);
+                let image = Ray { origin_m: ray.origin_m - shift, direction: ray.direction };
+                far = self.collect_image(&image, range.near_m, far, crossings);
+            }
+        }
+    }
+
+    /// Adds the crossings of one image of the scene; returns how far the ray still sees.
+    fn collect_image(&self, ray: &Ray, near_m: f32, far_m: f32, crossings: &mut Vec<Crossing>) -> f32 {
+        let mut limit = far_m;
+        self.bvh.traverse(ray.origin_m, ray.direction, near_m, far_m, |item, far| {
+            let Some(crossing) = self.cross(item as usize, ray, near_m, far) else { return far };
+            crossings.push(crossing);
+            limit = if crossing.alpha >= 1.0 { far.min(crossing.depth_m) } else { far };
+            limit
+        });
+        limit
+    }
+
+    fn cross(&self, item: usize, ray: &Ray, near_m: f32, far_m: f32) -> Option<Crossing> {
+        if item >= self.starts[1] {
+            let triangle = item - self.starts[1];
+            let depth_m = triangle_depth(self.scene.skin?.corners_m(triangle), ray)?;
+            let surface = Surface::Skin { triangle: triangle as u32 };
+            return (near_m..=far_m).contains(&depth_m).then_some(Crossing { depth_m, alpha: 1.0, surface });
+        }
+        let (set, piece) = if item < self.starts[0] { (0, item) } else { (1, item - self.starts[0]) };
+        let strands = self.strands(set);
+        let (strand, segment, cone) = cone(strands, piece);
+        let hit = cone.hit(ray, near_m, far_m)?;
+        let s = (segment as f32 + hit.s) / (strands.points_per_strand - 1) as f32;
+        let surface = Surface::Hair { set, strand: strand as u32, segment: segment as u32, s };
+        Some(Crossing { depth_m: hit.depth_m, alpha: strands.profile.opacity_at(s), surface })
+    }
+}
+
+impl Seen {
+    fn add(&mut self, other: &Self) {
+        self.alpha += other.alpha;
+        self.guard += other.guard;
+        self.undercoat += other.undercoat;
+        self.depth_m += other.depth_m;
+        self.albedo += other.albedo;
+        self.tangent += other.tangent;
+        self.normal += other.normal;
+    }
+
+    fn scaled(self, f: f32) -> Self {
+        Self {
+            alpha: self.alpha * f,
+            guard: self.guard * f,
+            undercoat: self.undercoat * f,
+            depth_m: self.depth_m * f,
+            albedo: self.albedo * f,
+            tangent: self.tangent * f,
+            normal: self.normal * f,
+        }
+    }
+}
+
+/// Distance at which a ray meets a triangle from either side (Möller and Trumbore 1997).
+fn triangle_depth([a, b, c]: [Vec3; 3], ray: &Ray) -> Option<f32> {
+    let (e1, e2) = (b - a, c - a);
+    let p = ray.direction.cross(e2);
+    let determinant = e1.dot(p);
+    if determinant == 0.0 {
+        return None;
+    }
+    let to = (ray.origin_m - a) / determinant;
+    let u = to.dot(p);
+    let q = to.cross(e1);
+    let v = ray.direction.dot(q);
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| e2.dot(q))
+}

@@ -1,0 +1,36 @@
+//! Floor 4: the hybrid renderer. One entry: a scene, rays, a depth range, a film.
+
+pub mod bvh;
+pub mod cast;
+pub mod cone;
+pub mod rays;
+
+use crate::data::mesh::Mesh;
+use crate::data::strands::Strands;
+
+/// What is rendered.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Scene<'a> {
+    /// Guard hair.
+    pub guard: Option<&'a Strands>,
+    /// Undercoat as single hairs.
+    pub undercoat: Option<&'a Strands>,
+    /// The opaque skin.
+    pub skin: Option<&'a Mesh>,
+    /// Edge of a tile that repeats along x and y, m; none for a scene that does not repeat.
+    pub torus_m: Option<f32>,
+}
+
+/// The part of each ray that counts, m from its origin. Hair is cut at its ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DepthRange {
+    /// Begin.
+    pub near_m: f32,
+    /// End.
+    pub far_m: f32,
+}
+
+impl DepthRange {
+    /// All of the ray.
+    pub const ALL: Self = Self { near_m: 0.0, far_m: f32::INFINITY };
+}
