@@ -9,5 +9,6 @@ pub mod fur;
 pub mod math;
 pub mod preset;
 pub mod render;
+pub mod runtime;
 
 pub use error::{Error, Result};

@@ -1,1 +1,3 @@
+//! The one test binary; each module says what it holds.
 
+mod accuracy;

@@ -1,5 +1,11 @@
 //! Shell textures: a tile of hair in slabs, as the law of `docs/steps/shells.md` needs them.
 
+pub mod deposit;
+pub mod encode;
+pub mod ends;
+pub mod gains;
+pub mod shadow;
+
 use crate::error::{Error, Result};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

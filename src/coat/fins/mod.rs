@@ -1,5 +1,8 @@
 //! The fin texture: a slab of the tile's hair seen along the skin (Lengyel et al. 2001 §2.2).
 
+pub mod edges;
+pub mod texture;
+
 use crate::error::{Error, Result};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

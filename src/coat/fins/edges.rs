@@ -1,0 +1,50 @@
+//! Which edges of a coat may carry a fin, and what part of the texture each shows.
+
+use crate::data::coat::{FinEdge, FinTexture};
+use crate::math::Vec3;
+use crate::math::hash::{combine, unit_f32};
+use std::collections::BTreeMap;
+
+/// A coat's surface as fins need it.
+pub struct Surface<'a> {
+    /// Coat vertex positions, m.
+    pub positions_m: &'a [Vec3],
+    /// Which coat vertices are one point.
+    pub position_class: &'a [u32],
+    /// Coat vertex indices.
+    pub triangles: &'a [[u32; 3]],
+}
+
+/// One fin per edge of the welded surface, borders included; edges of no length are left out.
+///
+/// Each triangle gives a third of its area to each of its edges, so a fin's thickness is that area over the edge's
+/// length and all fins together hold the coat once.
+pub fn edges(surface: &Surface<'_>, texture: &FinTexture, seed: u64) -> Vec<FinEdge> {
+    // Edge of the welded surface → its first sighting: coat vertices, opposite vertex, area; then a second face.
+    let mut faces: BTreeMap<[u32; 2], Vec<([u32; 2], u32, f32)>> = BTreeMap::new();
+    for &[a, b, c] in surface.triangles {
+        let [pa, pb, pc] = [a, b, c].map(|v| surface.positions_m[v as usize]);
+        let area_m2 = 0.5 * (pb - pa).cross(pc - pa).length();
+        for (from, to, opposite) in [(a, b, c), (b, c, a), (c, a, b)] {
+            let classes = [from, to].map(|v| surface.position_class[v as usize]);
+            let key = [classes[0].min(classes[1]), classes[0].max(classes[1])];
+            faces.entry(key).or_default().push(([from, to], opposite, area_m2));
+        }
+    }
+    let fin = |(key, faces): (&[u32; 2], &Vec<([u32; 2], u32, f32)>)| {
+        let (ends, opposite, _) = faces[0];
+        let length_m = surface.positions_m[ends[0] as usize].distance(surface.positions_m[ends[1] as usize]);
+        if length_m <= 0.0 {
+            return None;
+        }
+        let area_m2 = faces.iter().map(|f| f.2).sum::<f32>() / 3.0;
+        let start = unit_f32(combine(combine(seed, u64::from(key[0])), u64::from(key[1])));
+        Some(FinEdge {
+            ends,
+            opposite: [opposite, faces.get(1).map_or(opposite, |f| f.1)],
+            u: [start, start + length_m / texture.width_m],
+            thickness: area_m2 / length_m / texture.thickness_m,
+        })
+    };
+    faces.iter().filter_map(fin).collect()
+}

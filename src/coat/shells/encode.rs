@@ -1,0 +1,161 @@
+//! Voxels into textures: mips, dilation, eight bits (the channels of [`ShellStack`]).
+
+use super::deposit::Voxels;
+use crate::data::coat::ShellStack;
+use crate::data::image::{Image8, srgb_from_linear, unorm8};
+use crate::math::{Vec2, Vec3};
+
+/// One texel before coding.
+#[derive(Clone, Copy, Debug, Default)]
+struct Texel {
+    extinction: f32,
+    tangent: Vec3,
+    /// Weighted by extinction.
+    colour: Vec3,
+    /// 1 − e^−κ.
+    ends: f32,
+    transmittance: f32,
+}
+
+/// What the textures are made from.
+pub struct Raw<'a> {
+    /// Extinction, tangents and colour of all hair.
+    pub voxels: &'a Voxels,
+    /// κ per voxel.
+    pub ends: &'a [f32],
+    /// T₀ per voxel.
+    pub transmittance: &'a [f32],
+    /// T₀ on the skin.
+    pub skin_transmittance: &'a [f32],
+    /// Skin colour factor, linear.
+    pub skin: Vec3,
+    /// Mean slope per slab.
+    pub slopes: &'a [Vec2],
+}
+
+/// Builds all mips and codes them; gains are 1.
+pub fn encode(raw: &Raw<'_>) -> ShellStack {
+    let voxels = raw.voxels;
+    let size = voxels.size;
+    let scale = voxels.extinction.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
+    let mut layers: Vec<Vec<Texel>> = vec![
+        raw.skin_transmittance
+            .iter()
+            .map(|&transmittance| Texel {
+                extinction: scale,
+                tangent: Vec3::Z * scale,
+                colour: raw.skin * scale,
+                ends: 1.0,
+                transmittance,
+            })
+            .collect(),
+    ];
+    for slab in 0..voxels.slabs {
+        let texel = |i: usize| {
+            let v = slab * size * size + i;
+            Texel {
+                extinction: voxels.extinction[v],
+                tangent: voxels.tangent[v],
+                colour: voxels.colour[v],
+                ends: -libm::expm1f(-raw.ends[v]),
+                transmittance: raw.transmittance[v],
+            }
+        };
+        layers.push((0..size * size).map(texel).collect());
+    }
+    let mut slopes = vec![Vec2::ZERO];
+    slopes.extend(raw.slopes);
+    let mut stack = ShellStack {
+        layers: layers.len() as u32,
+        size: size as u32,
+        gains: Vec::new(),
+        slopes,
+        extinction_scale_per_m: scale,
+        albedo: Vec::new(),
+        medium: Vec::new(),
+        ends: Vec::new(),
+    };
+    let pyramids: Vec<Vec<Vec<Texel>>> = layers.into_iter().map(pyramid).collect();
+    let colours: Vec<Vec<Vec<Vec3>>> = pyramids.iter().map(|p| dilated(p)).collect();
+    for mip in 0..pyramids[0].len() {
+        let level = |f: &dyn Fn(usize) -> Image8| (0..pyramids.len()).map(f).collect::<Vec<_>>();
+        stack.gains.push([1.0; 9]);
+        stack.albedo.push(level(&|layer| code_albedo(&pyramids[layer][mip], &colours[layer][mip])));
+        stack.medium.push(level(&|layer| code_medium(&pyramids[layer][mip], scale)));
+        stack.ends.push(level(&|layer| code_ends(&pyramids[layer][mip])));
+    }
+    stack
+}
+
+/// Halves until one texel is left; every value is averaged linearly (`docs/steps/shells.md`, mips).
+fn pyramid(base: Vec<Texel>) -> Vec<Vec<Texel>> {
+    let mut levels = vec![base];
+    while levels[levels.len() - 1].len() > 1 {
+        let fine = &levels[levels.len() - 1];
+        let size = fine.len().isqrt();
+        let half = size / 2;
+        let coarse = (0..half * half).map(|i| {
+            let (x, y) = (2 * (i % half), 2 * (i / half));
+            let four = [y * size + x, y * size + x + 1, (y + 1) * size + x, (y + 1) * size + x + 1].map(|j| &fine[j]);
+            Texel {
+                extinction: four.iter().map(|t| t.extinction).sum::<f32>() * 0.25,
+                tangent: four.iter().map(|t| t.tangent).sum::<Vec3>() * 0.25,
+                colour: four.iter().map(|t| t.colour).sum::<Vec3>() * 0.25,
+                ends: four.iter().map(|t| t.ends).sum::<f32>() * 0.25,
+                transmittance: four.iter().map(|t| t.transmittance).sum::<f32>() * 0.25,
+            }
+        });
+        let coarse = coarse.collect();
+        levels.push(coarse);
+    }
+    levels
+}
+
+/// Straight colour of every level; texels without hair take that of the next coarser level, so that filtering at a
+/// hair's edge meets no black.
+fn dilated(levels: &[Vec<Texel>]) -> Vec<Vec<Vec3>> {
+    let mut colours: Vec<Vec<Vec3>> = Vec::new();
+    for level in levels.iter().rev() {
+        let size = level.len().isqrt();
+        let colour = |(i, t): (usize, &Texel)| {
+            if t.extinction > 0.0 {
+                return t.colour / t.extinction;
+            }
+            let parent = |coarse: &Vec<Vec3>| coarse[i / size / 2 * (size / 2) + i % size / 2];
+            colours.last().map_or(Vec3::ZERO, parent)
+        };
+        let filled = level.iter().enumerate().map(colour).collect();
+        colours.push(filled);
+    }
+    colours.reverse();
+    colours
+}
+
+fn code(texels: usize, channels: u32, pixel: impl Fn(usize) -> [u8; 4]) -> Image8 {
+    let size = texels.isqrt() as u32;
+    let pixels = (0..texels).flat_map(|i| pixel(i).into_iter().take(channels as usize)).collect();
+    Image8 { width: size, height: size, channels, pixels }
+}
+
+fn code_albedo(texels: &[Texel], colours: &[Vec3]) -> Image8 {
+    code(texels.len(), 4, |i| {
+        let c = colours[i].map(|v| srgb_from_linear(v.clamp(0.0, 1.0)));
+        [unorm8(c.x), unorm8(c.y), unorm8(c.z), unorm8(texels[i].transmittance)]
+    })
+}
+
+fn code_medium(texels: &[Texel], scale: f32) -> Image8 {
+    code(texels.len(), 4, |i| {
+        let t = texels[i].tangent / scale;
+        [unorm8(texels[i].extinction / scale), signed8(t.x), signed8(t.y), signed8(t.z)]
+    })
+}
+
+fn code_ends(texels: &[Texel]) -> Image8 {
+    code(texels.len(), 1, |i| [unorm8(texels[i].ends), 0, 0, 0])
+}
+
+/// [−1, 1] to a byte with 128 for 0.
+pub fn signed8(value: f32) -> u8 {
+    (value.clamp(-1.0, 1.0) * 127.0 + 128.5) as u8
+}

@@ -1,0 +1,78 @@
+//! End opacity κ: what looking down the mean strand adds to the sides of the hairs. Each cross-section counts once over
+//! the stack, in the slab where it is first hit.
+
+use super::deposit::Voxels;
+use crate::data::strands::Strands;
+use crate::math::{Vec2, Vec3};
+use crate::render::cast::Caster;
+use crate::render::rays::Rays;
+use crate::render::{DepthRange, Scene};
+
+/// Rays per texel edge.
+const SUPERSAMPLING: usize = 4;
+
+/// Straightens the mean strand: moves every point back by ∫ k dz.
+fn straightened(strands: &Strands, slopes: &[Vec2], slab_m: f32) -> Strands {
+    let mut starts = vec![Vec2::ZERO];
+    for slope in slopes {
+        starts.push(starts[starts.len() - 1] + *slope * slab_m);
+    }
+    let mut straight = strands.clone();
+    for p in &mut straight.points_m {
+        let slab = ((p.z / slab_m).max(0.0) as usize).min(slopes.len() - 1);
+        let shift = starts[slab] + slopes[slab] * (p.z - slab as f32 * slab_m);
+        *p -= shift.extend(0.0);
+    }
+    straight
+}
+
+/// κ of guard hair per voxel; `guard` holds its deposit alone.
+pub fn guard_ends(strands: &Strands, guard: &Voxels, slopes: &[Vec2]) -> Vec<f32> {
+    let straight = straightened(strands, slopes, guard.slab_m);
+    let caster = Caster::new(Scene { guard: Some(&straight), torus_m: Some(guard.edge_m), ..Scene::default() });
+    let (size, fine) = (guard.size, guard.size * SUPERSAMPLING);
+    let top_m = guard.slab_m * guard.slabs as f32;
+    let rays = Rays::Tile { edge_m: guard.edge_m, top_m, direction: Vec3::NEG_Z, size: [fine, fine], supersampling: 1 };
+    let mut above = vec![1.0_f32; fine * fine];
+    let mut ends = vec![0.0; guard.extinction.len()];
+    let per_texel = 1.0 / (SUPERSAMPLING * SUPERSAMPLING) as f32;
+    for slab in (0..guard.slabs).rev() {
+        let near_m = top_m - (slab + 1) as f32 * guard.slab_m;
+        let film = caster.render(&rays, DepthRange { near_m, far_m: near_m + guard.slab_m });
+        let mut open = vec![0.0_f32; size * size];
+        let mut first = vec![0.0_f32; size * size];
+        for (i, (through, alpha)) in above.iter_mut().zip(&film.alpha).enumerate() {
+            let texel = i / fine / SUPERSAMPLING * size + i % fine / SUPERSAMPLING;
+            open[texel] += *through * per_texel;
+            first[texel] += *through * alpha * per_texel;
+            *through *= 1.0 - alpha;
+        }
+        let down = slopes[slab].extend(1.0).normalize();
+        for texel in 0..size * size {
+            let voxel = slab * size * size + texel;
+            if open[texel] < 0.5 * per_texel {
+                continue;
+            }
+            // All rays of a texel hit says no more than that fewer than half a ray passes.
+            let hit = (first[texel] / open[texel]).min(1.0 - 0.5 * per_texel);
+            let (a, along) = (guard.extinction[voxel], down.dot(guard.tangent[voxel]));
+            let sides = (a * a - along * along).max(0.0).sqrt() * guard.slab_m / down.z;
+            ends[voxel] = (-libm::log1pf(-hit) - sides).max(0.0);
+        }
+    }
+    ends
+}
+
+/// Adds κ of undercoat: the end area of each hair at its tip, spread over the texels around it.
+pub fn add_undercoat_ends(strands: &Strands, ends: &mut [f32], layout: &Voxels) {
+    let size = layout.size;
+    let texel_m = layout.edge_m / size as f32;
+    for strand in 0..strands.len() {
+        let Some(&tip) = strands.points_of_m(strand).last() else { continue };
+        let slab = ((tip.z / layout.slab_m).max(0.0) as usize).min(layout.slabs - 1);
+        let cell = |v: f32| ((v / texel_m).floor() as i64).rem_euclid(size as i64) as usize;
+        let radius_m = strands.root_radius_m[strand] * strands.profile.radius_factor(1.0);
+        let share = std::f32::consts::PI * radius_m * radius_m / (texel_m * texel_m);
+        ends[(slab * size + cell(tip.y)) * size + cell(tip.x)] += share;
+    }
+}

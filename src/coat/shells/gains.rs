@@ -1,0 +1,89 @@
+//! Gains g(θ) per mip: what makes the stack's mean transmittance that of its strands at every angle.
+
+use crate::data::coat::{GAIN_ANGLES_DEG, Tile};
+use crate::math::{Mat3, Vec2, Vec3};
+use crate::render::cast::Caster;
+use crate::render::rays::Rays;
+use crate::render::{DepthRange, Scene};
+use crate::runtime::cpu::{Stack, View};
+use rayon::prelude::*;
+
+/// Azimuths at which truth and stack are compared.
+const AZIMUTHS: usize = 8;
+/// Rays along a tile's edge per direction.
+const RAYS: usize = 40;
+/// Bounds of a gain: outside, texels too coarse to tell are at fault, not the law.
+const BOUNDS: (f32, f32) = (0.1, 4.0);
+/// Mean transmittance below which its ratio says nothing.
+const BLACK: f64 = 2e-4;
+
+/// Unit directions into the tile at `theta_deg`, evenly around.
+pub fn directions(theta_deg: f32) -> impl Iterator<Item = Vec3> {
+    let (sin, cos) = libm::sincosf(theta_deg.to_radians());
+    let count = if theta_deg == 0.0 { 1 } else { AZIMUTHS };
+    (0..count).map(move |i| {
+        let (s, c) = libm::sincosf((i as f32 + 0.25) * std::f32::consts::TAU / AZIMUTHS as f32);
+        Vec3::new(sin * c, sin * s, -cos)
+    })
+}
+
+/// Mean transmittance of the strands of a tile at each of [`GAIN_ANGLES_DEG`].
+pub fn strand_transmittance(scene: Scene<'_>, edge_m: f32, height_m: f32) -> [f64; 9] {
+    let caster = Caster::new(scene);
+    GAIN_ANGLES_DEG.map(|theta| {
+        let each: Vec<f64> = directions(theta)
+            .map(|direction| {
+                let rays = Rays::Tile { edge_m, top_m: height_m, direction, size: [RAYS, RAYS], supersampling: 1 };
+                let far_m = height_m / -direction.z;
+                caster.mean_transmittance(&rays, DepthRange { near_m: 0.0, far_m })
+            })
+            .collect();
+        each.iter().sum::<f64>() / each.len() as f64
+    })
+}
+
+/// Fits the gains of every mip of `tile` to the truth.
+pub fn fit(tile: &Tile, truth: &[f64; 9]) -> Vec<[f32; 9]> {
+    let stack = Stack::new(tile);
+    (0..stack.mips())
+        .map(|mip| {
+            let mut gains = [1.0; 9];
+            let mut last = 1.0;
+            for (i, (&theta, &target)) in GAIN_ANGLES_DEG.iter().zip(truth).enumerate() {
+                let depths = optical_depths(&stack, tile.shells.size >> mip, theta);
+                // Where nothing passes, any gain does: keep the neighbour's, which varies slowly.
+                if target > BLACK {
+                    last = solve(&depths, target);
+                }
+                gains[i] = last;
+            }
+            gains
+        })
+        .collect()
+}
+
+/// Ungained optical depths seen through pixels as large as a texel of the mip with `size` texels.
+fn optical_depths(stack: &Stack<'_>, size: u32, theta_deg: f32) -> Vec<f32> {
+    let n = size.clamp(8, RAYS as u32) as usize;
+    let views: Vec<View> = directions(theta_deg)
+        .map(|direction| View { direction, skin_from_tile: Mat3::IDENTITY, pixel: 1.0 / size.max(1) as f32 })
+        .collect();
+    (0..n * n)
+        .into_par_iter()
+        .flat_map_iter(|i| {
+            let uv = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32;
+            views.iter().map(move |view| stack.optical_depth(uv, view)).collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+/// The gain g with mean e^(−g τ) = target: the mean falls monotonically in g, so halving finds it.
+fn solve(depths: &[f32], target: f64) -> f32 {
+    let mean = |g: f64| depths.iter().map(|&t| libm::exp(-g * f64::from(t))).sum::<f64>() / depths.len() as f64;
+    let (mut low, mut high) = (f64::from(BOUNDS.0), f64::from(BOUNDS.1));
+    for _ in 0..24 {
+        let middle = 0.5 * (low + high);
+        *(if mean(middle) > target { &mut low } else { &mut high }) = middle;
+    }
+    (0.5 * (low + high)) as f32
+}

@@ -1,0 +1,107 @@
+//! A tile from hair to textures.
+
+use super::fins::{FinParameters, texture};
+use super::shells::deposit::{Voxels, mean_slopes};
+use super::shells::encode::{Raw, encode};
+use super::shells::{ShellParameters, ends, gains, shadow};
+use crate::data::coat::Tile;
+use crate::data::strands::Strands;
+use crate::fur::groom::fibre::Fibre;
+use crate::fur::grow;
+use crate::math::Vec3;
+use crate::math::hash::combine;
+use crate::render::Scene;
+
+/// The hair of a tile.
+#[derive(Clone, Debug)]
+pub struct TileHair {
+    /// Guard hair.
+    pub guard: Strands,
+    /// Undercoat, hair by hair.
+    pub undercoat: Strands,
+    /// Edge of the tile, m.
+    pub edge_m: f32,
+    /// Height that no hair exceeds, m.
+    pub height_m: f32,
+}
+
+impl TileHair {
+    /// Grows both kinds on a tile with edge `edge_m`.
+    pub fn grow(guard: &Fibre, undercoat: &Fibre, edge_m: f32, seed: u64) -> Self {
+        let guard = grow::tile::grow(guard, edge_m, combine(seed, 1));
+        let undercoat = grow::tile::grow(undercoat, edge_m, combine(seed, 2));
+        let highest = |s: &Strands| s.points_m.iter().map(|p| p.z).fold(0.0, f32::max);
+        // A little above the highest tip, so that no tip ends exactly on the top.
+        let height_m = highest(&guard).max(highest(&undercoat)).max(1e-6) * 1.001;
+        Self { guard, undercoat, edge_m, height_m }
+    }
+
+    /// As a scene that repeats.
+    pub fn scene(&self) -> Scene<'_> {
+        Scene { guard: Some(&self.guard), undercoat: Some(&self.undercoat), skin: None, torus_m: Some(self.edge_m) }
+    }
+}
+
+/// What is baked from a tile's hair.
+#[derive(Clone, Debug)]
+pub struct TileRecipe {
+    /// Name of the preset.
+    pub preset: String,
+    /// Shells.
+    pub shells: ShellParameters,
+    /// Fins.
+    pub fins: FinParameters,
+    /// Skin colour factor, linear RGB.
+    pub skin: Vec3,
+}
+
+/// Bakes the textures of a tile.
+pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
+    let size = recipe.shells.texture_size as usize;
+    let slabs = recipe.shells.layers as usize - 1;
+    let slopes = slopes(hair, slabs);
+    let mut guard = Voxels::new(size, slabs, hair.edge_m, hair.height_m);
+    guard.deposit(&hair.guard, &slopes, 0.0);
+    let mut kappa = ends::guard_ends(&hair.guard, &guard, &slopes);
+    let mut voxels = Voxels::new(size, slabs, hair.edge_m, hair.height_m);
+    voxels.deposit(&hair.undercoat, &slopes, undercoat_width_m(hair));
+    voxels.add(&guard);
+    ends::add_undercoat_ends(&hair.undercoat, &mut kappa, &voxels);
+    let transmittance = shadow::transmittance(&voxels, &kappa);
+    let skin_transmittance = shadow::transmittance_at_skin(&voxels, &kappa);
+    let shells = encode(&Raw {
+        voxels: &voxels,
+        ends: &kappa,
+        transmittance: &transmittance,
+        skin_transmittance: &skin_transmittance,
+        skin: recipe.skin,
+        slopes: &slopes,
+    });
+    let mut tile = Tile {
+        preset: recipe.preset.clone(),
+        edge_m: hair.edge_m,
+        height_m: hair.height_m,
+        shells,
+        fin: texture::bake(hair, &recipe.fins, &slab_means(&transmittance, slabs)),
+    };
+    let truth = gains::strand_transmittance(hair.scene(), hair.edge_m, hair.height_m);
+    tile.shells.gains = gains::fit(&tile, &truth);
+    tile
+}
+
+/// Slope of the mean guard hair per slab; of the undercoat where there is no guard hair.
+fn slopes(hair: &TileHair, slabs: usize) -> Vec<crate::math::Vec2> {
+    let strands = if hair.guard.is_empty() { &hair.undercoat } else { &hair.guard };
+    mean_slopes(strands, slabs, hair.height_m)
+}
+
+/// Undercoat is a density, not hairs: each is spread over half again the mean distance to its neighbours.
+fn undercoat_width_m(hair: &TileHair) -> f32 {
+    1.5 * hair.edge_m / (hair.undercoat.len().max(1) as f32).sqrt()
+}
+
+/// Mean of the values of each slab.
+fn slab_means(values: &[f32], slabs: usize) -> Vec<f32> {
+    let per_slab = values.len() / slabs;
+    values.chunks(per_slab).map(|slab| slab.iter().sum::<f32>() / per_slab as f32).collect()
+}

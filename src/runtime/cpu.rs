@@ -1,0 +1,208 @@
+//! The law of a shell stack on the CPU: what a fragment shader does at one pixel, in plain steps.
+//!
+//! A tile is worn sheared: a point (x, y, z) of the tile sits at x·X + y·Y + z·O of the skin's frame, where X and Y are
+//! unit tangents and O is the coat's offset over the stack's height. Hair keeps its diameter under that map, so the
+//! medium changes with it (`docs/steps/shells.md`).
+
+use crate::data::coat::{GAIN_ANGLES_DEG, Tile};
+use crate::data::image::{Image8, linear_from_srgb};
+use crate::math::{Mat3, Vec2, Vec3};
+
+/// Steepest view that the law is evaluated at: cos 87°.
+const LEAST_COSINE: f32 = 0.052;
+/// Longest anisotropic fetch in taps, as graphics hardware has it.
+const MAX_TAPS: f32 = 16.0;
+
+/// A texel as a shader sees it after filtering.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Texel {
+    /// Lateral extinction A, 1/m.
+    pub extinction: f32,
+    /// A times the mean tangent, 1/m.
+    pub tangent: Vec3,
+    /// End opacity 1 − e^−κ.
+    pub ends: f32,
+    /// Straight albedo, linear.
+    pub albedo: Vec3,
+    /// Transmittance to the outside.
+    pub transmittance: f32,
+}
+
+/// A stack with its texels decoded.
+pub struct Stack<'a> {
+    tile: &'a Tile,
+    /// `[mip][layer]`, rows from the top.
+    texels: Vec<Vec<Vec<Texel>>>,
+}
+
+/// How a tile is seen at one place of the skin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Direction of the ray in the skin's frame (x and y along the tile's axes, z the normal), unit, pointing in: z < 0.
+    pub direction: Vec3,
+    /// The skin's frame from the tile's: columns X, Y, O.
+    pub skin_from_tile: Mat3,
+    /// Edge of the pixel on the skin, in tile edges.
+    pub pixel: f32,
+}
+
+impl View {
+    /// The ray's direction in tile space, at least as steep as the law allows; not unit: its z counts path per height.
+    fn in_tile(&self) -> Vec3 {
+        let d = self.skin_from_tile.inverse() * self.direction;
+        Vec3::new(d.x, d.y, d.z.min(-LEAST_COSINE * d.length()))
+    }
+
+    /// Angle between ray and tile normal, degrees.
+    pub fn theta_deg(&self) -> f32 {
+        let d = self.in_tile();
+        libm::acosf((-d.z / d.length()).min(1.0)).to_degrees()
+    }
+}
+
+/// The gain at `theta_deg`, linear between the stored angles.
+pub fn gain_at(gains: &[f32; 9], theta_deg: f32) -> f32 {
+    let i = GAIN_ANGLES_DEG.partition_point(|&a| a <= theta_deg).clamp(1, 8);
+    let (low, high) = (GAIN_ANGLES_DEG[i - 1], GAIN_ANGLES_DEG[i]);
+    let t = ((theta_deg - low) / (high - low)).clamp(0.0, 1.0);
+    gains[i - 1] + (gains[i] - gains[i - 1]) * t
+}
+
+/// Optical depth of one slab of height `slab_m` (in the tile), without gain.
+pub fn slab_optical_depth(texel: &Texel, view: &View, slab_m: f32) -> f32 {
+    let ends = -libm::log1pf(-texel.ends.min(0.999));
+    let length = texel.tangent.length();
+    if texel.extinction <= 0.0 || length <= 0.0 {
+        return ends;
+    }
+    let map = view.skin_from_tile;
+    let volume = map.determinant().max(1e-6);
+    let stretch = (map * (texel.tangent / length)).length();
+    let extinction = texel.extinction * stretch / volume;
+    let along = view.direction.dot(map * texel.tangent) / volume;
+    let lateral = (extinction * extinction - along * along).max(0.0).sqrt();
+    lateral * slab_m / -view.in_tile().z + ends
+}
+
+impl<'a> Stack<'a> {
+    /// Decodes a tile's shells.
+    pub fn new(tile: &'a Tile) -> Self {
+        let stack = &tile.shells;
+        let texels = (0..stack.medium.len())
+            .map(|mip| {
+                (0..stack.layers as usize)
+                    .map(|layer| {
+                        let images = [&stack.albedo[mip][layer], &stack.medium[mip][layer], &stack.ends[mip][layer]];
+                        decode(images, stack.extinction_scale_per_m)
+                    })
+                    .collect()
+            })
+            .collect();
+        Self { tile, texels }
+    }
+
+    /// Number of mip levels.
+    pub fn mips(&self) -> usize {
+        self.texels.len()
+    }
+
+    /// Height of one slab, m.
+    pub fn slab_m(&self) -> f32 {
+        self.tile.height_m / (self.tile.shells.layers - 1) as f32
+    }
+
+    /// What a shader fetches for slab `layer` (1 … layers − 1) where the view ray passes the tile's plane z = 0 at `uv`.
+    pub fn fetch(&self, layer: usize, uv: Vec2, view: &View) -> Texel {
+        let slab_m = self.slab_m();
+        let d = view.in_tile();
+        let slope = Vec2::new(d.x, d.y) / d.z;
+        let middle_m = (layer as f32 - 0.5) * slab_m;
+        let centre = uv + slope * middle_m / self.tile.edge_m;
+        let run = (slope - self.tile.shells.slopes[layer]) * slab_m / self.tile.edge_m;
+        self.fetch_along(layer, centre, run, view.pixel)
+    }
+
+    /// An anisotropic fetch: the pixel's footprint widened by `run`, both in tile edges.
+    fn fetch_along(&self, layer: usize, centre: Vec2, run: Vec2, pixel: f32) -> Texel {
+        let size = self.tile.shells.size as f32;
+        let major = (pixel * pixel + run.length_squared()).sqrt();
+        let taps = (major / pixel).ceil().clamp(1.0, MAX_TAPS);
+        let level = libm::log2f((major / taps * size).max(1.0)).min((self.mips() - 1) as f32);
+        let axis = run.normalize_or_zero() * (major - pixel).max(0.0);
+        let mut sum = Texel::default();
+        for tap in 0..taps as usize {
+            let at = centre + axis * ((tap as f32 + 0.5) / taps - 0.5);
+            let (low, t) = (level.floor() as usize, level.fract());
+            sum.add(&self.bilinear(low, layer, at), (1.0 - t) / taps);
+            if t > 0.0 {
+                sum.add(&self.bilinear(low + 1, layer, at), t / taps);
+            }
+        }
+        sum
+    }
+
+    fn bilinear(&self, mip: usize, layer: usize, uv: Vec2) -> Texel {
+        let size = (self.tile.shells.size >> mip).max(1) as usize;
+        let p = uv * size as f32 - 0.5;
+        let (x, y) = (p.x.floor(), p.y.floor());
+        let (fx, fy) = (p.x - x, p.y - y);
+        let mask = size as i64 - 1;
+        let texels = &self.texels[mip][layer];
+        let mut sum = Texel::default();
+        for (dx, dy, weight) in
+            [(0, 0, (1.0 - fx) * (1.0 - fy)), (1, 0, fx * (1.0 - fy)), (0, 1, (1.0 - fx) * fy), (1, 1, fx * fy)]
+        {
+            let (ix, iy) = ((x as i64 + dx) & mask, (y as i64 + dy) & mask);
+            sum.add(&texels[iy as usize * size + ix as usize], weight);
+        }
+        sum
+    }
+
+    /// Optical depth of the whole stack along the view ray through `uv`, without gain; layer 0, the skin, left out.
+    pub fn optical_depth(&self, uv: Vec2, view: &View) -> f32 {
+        (1..self.tile.shells.layers as usize)
+            .map(|layer| slab_optical_depth(&self.fetch(layer, uv, view), view, self.slab_m()))
+            .sum()
+    }
+
+    /// Gain for this view at the mip that the pixel asks for.
+    pub fn gain(&self, view: &View) -> f32 {
+        let level = libm::log2f((view.pixel * self.tile.shells.size as f32).max(1.0)).min((self.mips() - 1) as f32);
+        let theta = view.theta_deg();
+        let at = |mip: usize| gain_at(&self.tile.shells.gains[mip.min(self.mips() - 1)], theta);
+        let low = at(level.floor() as usize);
+        low + (at(level.floor() as usize + 1) - low) * level.fract()
+    }
+
+    /// Coverage of the whole stack along the view ray through `uv`.
+    pub fn coverage(&self, uv: Vec2, view: &View) -> f32 {
+        -libm::expm1f(-self.gain(view) * self.optical_depth(uv, view))
+    }
+}
+
+impl Texel {
+    fn add(&mut self, other: &Self, weight: f32) {
+        self.extinction += other.extinction * weight;
+        self.tangent += other.tangent * weight;
+        self.ends += other.ends * weight;
+        self.albedo += other.albedo * weight;
+        self.transmittance += other.transmittance * weight;
+    }
+}
+
+fn decode([albedo, medium, ends]: [&Image8; 3], scale_per_m: f32) -> Vec<Texel> {
+    let unorm = |byte: u8| f32::from(byte) / 255.0;
+    let signed = |byte: u8| (f32::from(byte) - 128.0) / 127.0;
+    (0..ends.pixels.len())
+        .map(|i| {
+            let (a, m) = (&albedo.pixels[4 * i..4 * i + 4], &medium.pixels[4 * i..4 * i + 4]);
+            Texel {
+                extinction: unorm(m[0]) * scale_per_m,
+                tangent: Vec3::new(signed(m[1]), signed(m[2]), signed(m[3])) * scale_per_m,
+                ends: unorm(ends.pixels[i]),
+                albedo: Vec3::new(unorm(a[0]), unorm(a[1]), unorm(a[2])).map(linear_from_srgb),
+                transmittance: unorm(a[3]),
+            }
+        })
+        .collect()
+}
