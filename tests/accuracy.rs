@@ -3,26 +3,21 @@
 use furrier::coat::fins::FinParameters;
 use furrier::coat::judge::{Effort, Row, coverage_table};
 use furrier::coat::shells::ShellParameters;
-use furrier::coat::tile::{TileHair, TileRecipe, bake};
+use furrier::coat::tile::{TileHair, TileRecipe, bake, leaning};
 use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::groom::{Colour, Guard, Shape, Undercoat};
-use furrier::math::{Mat3, Vec3};
+use furrier::math::Vec3;
 
-const EFFORT: Effort = Effort { pixels: 64, supersampling: 4 };
+const EFFORT: Effort = Effort { pixels: 128, supersampling: 3 };
 
-fn recipe() -> TileRecipe {
+fn recipe(lean_deg: f32) -> TileRecipe {
     TileRecipe {
         preset: "test".into(),
         shells: ShellParameters { tile_mm: 8.0, ..ShellParameters::default() },
         fins: FinParameters::default(),
         skin: Vec3::splat(0.5),
+        lean_deg,
     }
-}
-
-/// The coat's map for hair leaning `degrees` along +x.
-fn leaning(degrees: f32) -> Mat3 {
-    let (sin, cos) = degrees.to_radians().sin_cos();
-    Mat3::from_cols(Vec3::X, Vec3::Y, Vec3::new(sin, 0.0, cos))
 }
 
 fn hair(guard: bool, shape: Shape) -> TileHair {
@@ -39,7 +34,7 @@ fn hair(guard: bool, shape: Shape) -> TileHair {
 fn table(guard: bool, shape: Shape, lean_deg: f32) -> Vec<Row> {
     let hair = hair(guard, shape);
     let start = std::time::Instant::now();
-    let tile = bake(&hair, &recipe());
+    let tile = bake(&hair, &recipe(lean_deg));
     println!("baked in {:.2} s", start.elapsed().as_secs_f64());
     println!("gains {:?} {:?}", tile.shells.gains[0], tile.shells.gains[3]);
     let rows = coverage_table(&hair, &tile, leaning(lean_deg), EFFORT);

@@ -4,9 +4,9 @@ use super::shells::gains::directions;
 use super::tile::TileHair;
 use crate::data::coat::Tile;
 use crate::math::{Mat3, Vec2, Vec3};
+use crate::render::DepthRange;
 use crate::render::cast::Caster;
 use crate::render::rays::Rays;
-use crate::render::{DepthRange, Scene};
 use crate::runtime::cpu::{Stack, View, slab_optical_depth};
 use serde::Serialize;
 
@@ -41,17 +41,10 @@ pub struct Effort {
 
 /// Judges a tile worn under `skin_from_tile` (identity: no lean). The strands are those of `hair` under the same map.
 pub fn coverage_table(hair: &TileHair, tile: &Tile, skin_from_tile: Mat3, effort: Effort) -> Vec<Row> {
-    let worn = |strands: &crate::data::strands::Strands| {
-        let mut worn = strands.clone();
-        worn.points_m.iter_mut().for_each(|p| *p = skin_from_tile * *p);
-        worn
-    };
-    let (guard, undercoat) = (worn(&hair.guard), worn(&hair.undercoat));
-    let scene = Scene { guard: Some(&guard), undercoat: Some(&undercoat), skin: None, torus_m: Some(hair.edge_m) };
-    let caster = Caster::new(scene);
+    let worn = hair.worn(skin_from_tile);
+    let caster = Caster::new(worn.scene());
     let stack = Stack::new(tile);
-    let highest = |s: &crate::data::strands::Strands| s.points_m.iter().map(|p| p.z).fold(0.0, f32::max);
-    let top_m = highest(&guard).max(highest(&undercoat)) * 1.001;
+    let top_m = worn.height_m;
     ANGLES_DEG.map(|theta| row(&caster, &stack, tile, top_m, theta, skin_from_tile, effort)).to_vec()
 }
 

@@ -8,8 +8,8 @@ use crate::data::coat::Tile;
 use crate::data::strands::Strands;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::grow;
-use crate::math::Vec3;
 use crate::math::hash::combine;
+use crate::math::{Mat3, Vec3};
 use crate::render::Scene;
 
 /// The hair of a tile.
@@ -36,10 +36,26 @@ impl TileHair {
         Self { guard, undercoat, edge_m, height_m }
     }
 
+    /// The same hair as a skin wears it: every point mapped by `skin_from_tile`, which must keep x and y.
+    pub fn worn(&self, skin_from_tile: Mat3) -> Self {
+        let mut worn = self.clone();
+        for p in worn.guard.points_m.iter_mut().chain(&mut worn.undercoat.points_m) {
+            *p = skin_from_tile * *p;
+        }
+        worn.height_m *= skin_from_tile.z_axis.z;
+        worn
+    }
+
     /// As a scene that repeats.
     pub fn scene(&self) -> Scene<'_> {
         Scene { guard: Some(&self.guard), undercoat: Some(&self.undercoat), skin: None, torus_m: Some(self.edge_m) }
     }
+}
+
+/// The map from a tile to the skin's frame for hair that leans `degrees` along the comb, its length kept.
+pub fn leaning(degrees: f32) -> Mat3 {
+    let (sin, cos) = libm::sincosf(degrees.to_radians());
+    Mat3::from_cols(Vec3::X, Vec3::Y, Vec3::new(sin, 0.0, cos))
 }
 
 /// What is baked from a tile's hair.
@@ -53,6 +69,8 @@ pub struct TileRecipe {
     pub fins: FinParameters,
     /// Skin colour factor, linear RGB.
     pub skin: Vec3,
+    /// Mean lean of the hair as worn, degrees: the gains are fitted there.
+    pub lean_deg: f32,
 }
 
 /// Bakes the textures of a tile.
@@ -84,8 +102,10 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
         shells,
         fin: texture::bake(hair, &recipe.fins, &slab_means(&transmittance, slabs)),
     };
-    let truth = gains::strand_transmittance(hair.scene(), hair.edge_m, hair.height_m);
-    tile.shells.gains = gains::fit(&tile, &truth);
+    let lean = leaning(recipe.lean_deg);
+    let worn = hair.worn(lean);
+    let truth = gains::strand_transmittance(worn.scene(), worn.edge_m, worn.height_m, lean);
+    tile.shells.gains = gains::fit(&tile, &truth, lean);
     tile
 }
 

@@ -27,14 +27,16 @@ pub fn directions(theta_deg: f32) -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// Mean transmittance of the strands of a tile at each of [`GAIN_ANGLES_DEG`].
-pub fn strand_transmittance(scene: Scene<'_>, edge_m: f32, height_m: f32) -> [f64; 9] {
+/// Mean transmittance at each of [`GAIN_ANGLES_DEG`] (in the tile) of strands worn under `skin_from_tile`, which reach
+/// up to `top_m` there.
+pub fn strand_transmittance(scene: Scene<'_>, edge_m: f32, top_m: f32, skin_from_tile: Mat3) -> [f64; 9] {
     let caster = Caster::new(scene);
     GAIN_ANGLES_DEG.map(|theta| {
         let each: Vec<f64> = directions(theta)
+            .map(|in_tile| (skin_from_tile * in_tile).normalize())
             .map(|direction| {
-                let rays = Rays::Tile { edge_m, top_m: height_m, direction, size: [RAYS, RAYS], supersampling: 1 };
-                let far_m = height_m / -direction.z;
+                let rays = Rays::Tile { edge_m, top_m, direction, size: [RAYS, RAYS], supersampling: 1 };
+                let far_m = top_m / -direction.z;
                 caster.mean_transmittance(&rays, DepthRange { near_m: 0.0, far_m })
             })
             .collect();
@@ -42,15 +44,15 @@ pub fn strand_transmittance(scene: Scene<'_>, edge_m: f32, height_m: f32) -> [f6
     })
 }
 
-/// Fits the gains of every mip of `tile` to the truth.
-pub fn fit(tile: &Tile, truth: &[f64; 9]) -> Vec<[f32; 9]> {
+/// Fits the gains of every mip of `tile`, worn under `skin_from_tile`, to the truth.
+pub fn fit(tile: &Tile, truth: &[f64; 9], skin_from_tile: Mat3) -> Vec<[f32; 9]> {
     let stack = Stack::new(tile);
     (0..stack.mips())
         .map(|mip| {
             let mut gains = [1.0; 9];
             let mut last = 1.0;
             for (i, (&theta, &target)) in GAIN_ANGLES_DEG.iter().zip(truth).enumerate() {
-                let depths = optical_depths(&stack, tile.shells.size >> mip, theta);
+                let depths = optical_depths(&stack, tile.shells.size >> mip, theta, skin_from_tile);
                 // Where nothing passes, any gain does: keep the neighbour's, which varies slowly.
                 if target > BLACK {
                     last = solve(&depths, target);
@@ -63,10 +65,14 @@ pub fn fit(tile: &Tile, truth: &[f64; 9]) -> Vec<[f32; 9]> {
 }
 
 /// Ungained optical depths seen through pixels as large as a texel of the mip with `size` texels.
-fn optical_depths(stack: &Stack<'_>, size: u32, theta_deg: f32) -> Vec<f32> {
+fn optical_depths(stack: &Stack<'_>, size: u32, theta_deg: f32, skin_from_tile: Mat3) -> Vec<f32> {
     let n = size.clamp(8, RAYS as u32) as usize;
     let views: Vec<View> = directions(theta_deg)
-        .map(|direction| View { direction, skin_from_tile: Mat3::IDENTITY, pixel: 1.0 / size.max(1) as f32 })
+        .map(|in_tile| View {
+            direction: (skin_from_tile * in_tile).normalize(),
+            skin_from_tile,
+            pixel: 1.0 / size.max(1) as f32,
+        })
         .collect();
     (0..n * n)
         .into_par_iter()
