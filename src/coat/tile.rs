@@ -85,8 +85,7 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
     voxels.deposit(&hair.undercoat, &slopes, undercoat_width_m(hair));
     voxels.add(&guard);
     ends::add_undercoat_ends(&hair.undercoat, &mut kappa, &voxels);
-    let transmittance = shadow::transmittance(&voxels, &kappa);
-    let skin_transmittance = shadow::transmittance_at_skin(&voxels, &kappa);
+    let (transmittance, skin_transmittance) = shadow::transmittance(&voxels, &kappa);
     let shells = encode(&Raw {
         voxels: &voxels,
         ends: &kappa,

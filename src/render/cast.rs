@@ -29,6 +29,27 @@ struct Crossing {
     surface: Surface,
 }
 
+/// Where a search for crossings may end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stop {
+    /// Nothing behind the nearest opaque crossing matters.
+    NearestOpaque,
+    /// Once anything is opaque, nothing else matters.
+    AnyOpaque,
+}
+
+/// Whether this crossing is of the same hair as the one before: neighbouring pieces overlap at their joint, where the
+/// hair counts once.
+fn same_hair(last: &mut Option<(u8, u32)>, crossing: &Crossing) -> bool {
+    let hair = match crossing.surface {
+        Surface::Hair { set, strand, .. } => Some((set, strand)),
+        Surface::Skin { .. } => None,
+    };
+    let same = hair.is_some() && hair == *last;
+    *last = hair;
+    same
+}
+
 /// What one ray sees; colour-like values are premultiplied by alpha.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seen {
@@ -121,43 +142,43 @@ impl<'a> Caster<'a> {
         film
     }
 
-    /// Mean transmittance of each ray of a film, without its layers: quicker than [`Self::render`].
+    /// Mean transmittance over the rays of a film: quicker than [`Self::render`], since any opaque crossing will do.
     pub fn mean_transmittance(&self, rays: &Rays<'_>, range: DepthRange) -> f64 {
         let [width, height] = rays.size();
-        let rows: Vec<f64> = (0..height)
-            .into_par_iter()
-            .map_init(Vec::new, |crossings, y| {
-                let of_pixel = |x: usize, crossings: &mut Vec<Crossing>| -> f64 {
-                    (0..rays.per_pixel())
-                        .map(|sample| f64::from(1.0 - self.look(&rays.ray(x, y, sample), range, crossings).alpha))
-                        .sum()
-                };
-                (0..width).map(|x| of_pixel(x, crossings)).sum()
-            })
-            .collect();
+        let row = |crossings: &mut Vec<Crossing>, y: usize| -> f64 {
+            let samples = (0..width).flat_map(|x| (0..rays.per_pixel()).map(move |sample| (x, sample)));
+            samples.map(|(x, sample)| f64::from(self.through(&rays.ray(x, y, sample), range, crossings))).sum()
+        };
+        let rows: Vec<f64> = (0..height).into_par_iter().map_init(Vec::new, row).collect();
         rows.iter().sum::<f64>() / (width * height * rays.per_pixel()) as f64
+    }
+
+    fn through(&self, ray: &Ray, range: DepthRange, crossings: &mut Vec<Crossing>) -> f32 {
+        crossings.clear();
+        self.collect(ray, range, Stop::AnyOpaque, crossings);
+        if crossings.iter().any(|c| c.alpha >= 1.0) {
+            return 0.0;
+        }
+        self.sort(crossings);
+        let mut through = 1.0;
+        let mut last = None;
+        for crossing in crossings.iter().filter(|c| !same_hair(&mut last, c)) {
+            through *= 1.0 - crossing.alpha;
+        }
+        through
     }
 
     fn look(&self, ray: &Ray, range: DepthRange, crossings: &mut Vec<Crossing>) -> Seen {
         crossings.clear();
-        self.collect(ray, range, crossings);
-        // Depth first, then kind and source index: equal depths composite alike in any order of discovery.
-        crossings.sort_unstable_by(|a, b| {
-            a.depth_m.total_cmp(&b.depth_m).then_with(|| self.key(&a.surface).cmp(&self.key(&b.surface)))
-        });
+        self.collect(ray, range, Stop::NearestOpaque, crossings);
+        self.sort(crossings);
         let mut seen = Seen::default();
         let mut through = 1.0_f32;
-        let mut last: Option<(u8, u32)> = None;
+        let mut last = None;
         for crossing in crossings.iter() {
-            // Neighbouring pieces of one hair overlap at their joint: the hair counts once.
-            let hair = match crossing.surface {
-                Surface::Hair { set, strand, .. } => Some((set, strand)),
-                Surface::Skin { .. } => None,
-            };
-            if hair.is_some() && hair == last {
+            if same_hair(&mut last, crossing) {
                 continue;
             }
-            last = hair;
             let weight = through * crossing.alpha;
             self.shade(crossing, weight, &mut seen);
             through *= 1.0 - crossing.alpha;
@@ -168,6 +189,13 @@ impl<'a> Caster<'a> {
         }
         seen.alpha = 1.0 - through;
         seen
+    }
+
+    /// Depth first, then kind and source index: equal depths composite alike in any order of discovery.
+    fn sort(&self, crossings: &mut [Crossing]) {
+        crossings.sort_unstable_by(|a, b| {
+            a.depth_m.total_cmp(&b.depth_m).then_with(|| self.key(&a.surface).cmp(&self.key(&b.surface)))
+        });
     }
 
     fn key(&self, surface: &Surface) -> (u8, u32, u32) {
@@ -201,11 +229,11 @@ impl<'a> Caster<'a> {
         }
     }
 
-    /// All crossings in front of the first opaque one.
-    fn collect(&self, ray: &Ray, range: DepthRange, crossings: &mut Vec<Crossing>) {
+    /// All crossings up to where `stop` says.
+    fn collect(&self, ray: &Ray, range: DepthRange, stop: Stop, crossings: &mut Vec<Crossing>) {
         let Some((low, high)) = self.bvh.bounds() else { return };
         let Some(edge) = self.scene.torus_m else {
-            self.collect_image(ray, range.near_m, range.far_m, crossings);
+            self.collect_image(ray, range.near_m, range.far_m, stop, crossings);
             return;
         };
         // The images of the tile that the ray passes over, nearest first.
@@ -222,18 +250,25 @@ impl<'a> Caster<'a> {
             for iy in span(1) {
                 let shift = Vec3::new(ix as f32 * edge, iy as f32 * edge, 0.0);
                 let image = Ray { origin_m: ray.origin_m - shift, direction: ray.direction };
-                far = self.collect_image(&image, range.near_m, far, crossings);
+                far = self.collect_image(&image, range.near_m, far, stop, crossings);
+                if far < range.near_m {
+                    return;
+                }
             }
         }
     }
 
     /// Adds the crossings of one image of the scene; returns how far the ray still sees.
-    fn collect_image(&self, ray: &Ray, near_m: f32, far_m: f32, crossings: &mut Vec<Crossing>) -> f32 {
+    fn collect_image(&self, ray: &Ray, near_m: f32, far_m: f32, stop: Stop, crossings: &mut Vec<Crossing>) -> f32 {
         let mut limit = far_m;
         self.bvh.traverse(ray.origin_m, ray.direction, near_m, far_m, |item, far| {
             let Some(crossing) = self.cross(item as usize, ray, near_m, far) else { return far };
             crossings.push(crossing);
-            limit = if crossing.alpha >= 1.0 { far.min(crossing.depth_m) } else { far };
+            limit = match stop {
+                _ if crossing.alpha < 1.0 => far,
+                Stop::NearestOpaque => far.min(crossing.depth_m),
+                Stop::AnyOpaque => f32::NEG_INFINITY,
+            };
             limit
         });
         limit

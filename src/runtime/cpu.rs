@@ -5,7 +5,7 @@
 //! medium changes with it (`docs/steps/shells.md`).
 
 use crate::data::coat::{GAIN_ANGLES_DEG, Tile};
-use crate::data::image::{Image8, linear_from_srgb};
+use crate::data::image::Image8;
 use crate::math::{Mat3, Vec2, Vec3};
 
 /// Steepest view that the law is evaluated at: cos 87°.
@@ -22,10 +22,6 @@ pub struct Texel {
     pub tangent: Vec3,
     /// End opacity 1 − e^−κ.
     pub ends: f32,
-    /// Straight albedo, linear.
-    pub albedo: Vec3,
-    /// Transmittance to the outside.
-    pub transmittance: f32,
 }
 
 /// A stack with its texels decoded.
@@ -92,8 +88,7 @@ impl<'a> Stack<'a> {
             .map(|mip| {
                 (0..stack.layers as usize)
                     .map(|layer| {
-                        let images = [&stack.albedo[mip][layer], &stack.medium[mip][layer], &stack.ends[mip][layer]];
-                        decode(images, stack.extinction_scale_per_m)
+                        decode(&stack.medium[mip][layer], &stack.ends[mip][layer], stack.extinction_scale_per_m)
                     })
                     .collect()
             })
@@ -185,23 +180,19 @@ impl Texel {
         self.extinction += other.extinction * weight;
         self.tangent += other.tangent * weight;
         self.ends += other.ends * weight;
-        self.albedo += other.albedo * weight;
-        self.transmittance += other.transmittance * weight;
     }
 }
 
-fn decode([albedo, medium, ends]: [&Image8; 3], scale_per_m: f32) -> Vec<Texel> {
+fn decode(medium: &Image8, ends: &Image8, scale_per_m: f32) -> Vec<Texel> {
     let unorm = |byte: u8| f32::from(byte) / 255.0;
     let signed = |byte: u8| (f32::from(byte) - 128.0) / 127.0;
     (0..ends.pixels.len())
         .map(|i| {
-            let (a, m) = (&albedo.pixels[4 * i..4 * i + 4], &medium.pixels[4 * i..4 * i + 4]);
+            let m = &medium.pixels[4 * i..4 * i + 4];
             Texel {
                 extinction: unorm(m[0]) * scale_per_m,
                 tangent: Vec3::new(signed(m[1]), signed(m[2]), signed(m[3])) * scale_per_m,
                 ends: unorm(ends.pixels[i]),
-                albedo: Vec3::new(unorm(a[0]), unorm(a[1]), unorm(a[2])).map(linear_from_srgb),
-                transmittance: unorm(a[3]),
             }
         })
         .collect()

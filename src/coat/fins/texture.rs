@@ -11,7 +11,7 @@ use crate::render::cast::Caster;
 use crate::render::rays::{Ray, Rays};
 
 /// Rays per texel edge.
-const SUPERSAMPLING: usize = 3;
+const SUPERSAMPLING: usize = 2;
 
 /// One texel, premultiplied by opacity.
 #[derive(Clone, Copy, Default)]

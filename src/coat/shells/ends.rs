@@ -5,7 +5,7 @@ use super::deposit::Voxels;
 use crate::data::strands::Strands;
 use crate::math::{Vec2, Vec3};
 use crate::render::cast::Caster;
-use crate::render::rays::Rays;
+use crate::render::rays::{Ray, Rays};
 use crate::render::{DepthRange, Scene};
 
 /// Rays per texel edge.
@@ -32,20 +32,28 @@ pub fn guard_ends(strands: &Strands, guard: &Voxels, slopes: &[Vec2]) -> Vec<f32
     let caster = Caster::new(Scene { guard: Some(&straight), torus_m: Some(guard.edge_m), ..Scene::default() });
     let (size, fine) = (guard.size, guard.size * SUPERSAMPLING);
     let top_m = guard.slab_m * guard.slabs as f32;
-    let rays = Rays::Tile { edge_m: guard.edge_m, top_m, direction: Vec3::NEG_Z, size: [fine, fine], supersampling: 1 };
     let mut above = vec![1.0_f32; fine * fine];
     let mut ends = vec![0.0; guard.extinction.len()];
     let per_texel = 1.0 / (SUPERSAMPLING * SUPERSAMPLING) as f32;
     for slab in (0..guard.slabs).rev() {
         let near_m = top_m - (slab + 1) as f32 * guard.slab_m;
-        let film = caster.render(&rays, DepthRange { near_m, far_m: near_m + guard.slab_m });
+        let texel_of = |i: usize| i / fine / SUPERSAMPLING * size + i % fine / SUPERSAMPLING;
+        // Only rays that are still open, over texels in which there is hair.
+        let extinction = guard.slab(&guard.extinction, slab);
+        let live: Vec<usize> = (0..fine * fine).filter(|&i| above[i] > 0.0 && extinction[texel_of(i)] > 0.0).collect();
+        let ray = |&i: &usize| {
+            let at = Vec2::new((i % fine) as f32 + 0.5, (i / fine) as f32 + 0.5) / fine as f32 * guard.edge_m;
+            Ray { origin_m: at.extend(top_m), direction: Vec3::NEG_Z }
+        };
+        let rays: Vec<Ray> = live.iter().map(ray).collect();
+        let range = DepthRange { near_m, far_m: near_m + guard.slab_m };
+        let film = caster.render(&Rays::Texels { rays: &rays, size: [1, rays.len()] }, range);
         let mut open = vec![0.0_f32; size * size];
         let mut first = vec![0.0_f32; size * size];
-        for (i, (through, alpha)) in above.iter_mut().zip(&film.alpha).enumerate() {
-            let texel = i / fine / SUPERSAMPLING * size + i % fine / SUPERSAMPLING;
-            open[texel] += *through * per_texel;
-            first[texel] += *through * alpha * per_texel;
-            *through *= 1.0 - alpha;
+        for (&i, &alpha) in live.iter().zip(&film.alpha) {
+            open[texel_of(i)] += above[i] * per_texel;
+            first[texel_of(i)] += above[i] * alpha * per_texel;
+            above[i] *= 1.0 - alpha;
         }
         let down = slopes[slab].extend(1.0).normalize();
         for texel in 0..size * size {

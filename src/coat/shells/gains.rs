@@ -12,6 +12,8 @@ use rayon::prelude::*;
 const AZIMUTHS: usize = 8;
 /// Rays along a tile's edge per direction.
 const RAYS: usize = 40;
+/// Places along a tile's edge where the stack is evaluated, per direction.
+const SPOTS: u32 = 24;
 /// Bounds of a gain: outside, texels too coarse to tell are at fault, not the law.
 const BOUNDS: (f32, f32) = (0.1, 4.0);
 /// Mean transmittance below which its ratio says nothing.
@@ -31,7 +33,12 @@ pub fn directions(theta_deg: f32) -> impl Iterator<Item = Vec3> {
 /// up to `top_m` there.
 pub fn strand_transmittance(scene: Scene<'_>, edge_m: f32, top_m: f32, skin_from_tile: Mat3) -> [f64; 9] {
     let caster = Caster::new(scene);
+    let mut black = false;
     GAIN_ANGLES_DEG.map(|theta| {
+        // Rays only get longer with the angle.
+        if black {
+            return 0.0;
+        }
         let each: Vec<f64> = directions(theta)
             .map(|in_tile| (skin_from_tile * in_tile).normalize())
             .map(|direction| {
@@ -40,7 +47,9 @@ pub fn strand_transmittance(scene: Scene<'_>, edge_m: f32, top_m: f32, skin_from
                 caster.mean_transmittance(&rays, DepthRange { near_m: 0.0, far_m })
             })
             .collect();
-        each.iter().sum::<f64>() / each.len() as f64
+        let mean = each.iter().sum::<f64>() / each.len() as f64;
+        black = mean <= BLACK;
+        mean
     })
 }
 
@@ -52,9 +61,9 @@ pub fn fit(tile: &Tile, truth: &[f64; 9], skin_from_tile: Mat3) -> Vec<[f32; 9]>
             let mut gains = [1.0; 9];
             let mut last = 1.0;
             for (i, (&theta, &target)) in GAIN_ANGLES_DEG.iter().zip(truth).enumerate() {
-                let depths = optical_depths(&stack, tile.shells.size >> mip, theta, skin_from_tile);
                 // Where nothing passes, any gain does: keep the neighbour's, which varies slowly.
                 if target > BLACK {
+                    let depths = optical_depths(&stack, tile.shells.size >> mip, theta, skin_from_tile);
                     last = solve(&depths, target);
                 }
                 gains[i] = last;
@@ -66,7 +75,7 @@ pub fn fit(tile: &Tile, truth: &[f64; 9], skin_from_tile: Mat3) -> Vec<[f32; 9]>
 
 /// Ungained optical depths seen through pixels as large as a texel of the mip with `size` texels.
 fn optical_depths(stack: &Stack<'_>, size: u32, theta_deg: f32, skin_from_tile: Mat3) -> Vec<f32> {
-    let n = size.clamp(8, RAYS as u32) as usize;
+    let n = size.clamp(8, SPOTS) as usize;
     let views: Vec<View> = directions(theta_deg)
         .map(|in_tile| View {
             direction: (skin_from_tile * in_tile).normalize(),

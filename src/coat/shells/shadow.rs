@@ -4,56 +4,51 @@
 //! it to the power √(1 − (l·m)²)/|cos θ|.
 
 use super::deposit::Voxels;
-use crate::math::Vec2;
 use rayon::prelude::*;
-use std::f32::consts::FRAC_1_SQRT_2;
+use std::f32::consts::{FRAC_1_SQRT_2, TAU};
 
 /// Directions around the normal.
 const AZIMUTHS: usize = 8;
 
-/// T₀ per slab and texel, `[slab][y][x]`.
-pub fn transmittance(voxels: &Voxels, ends: &[f32]) -> Vec<f32> {
+/// T₀ per slab and texel, `[slab][y][x]`, and on the skin, `[y][x]`.
+pub fn transmittance(voxels: &Voxels, ends: &[f32]) -> (Vec<f32>, Vec<f32>) {
+    let each: Vec<(Vec<f32>, Vec<f32>)> = (0..AZIMUTHS)
+        .into_par_iter()
+        .map(|i| towards(voxels, ends, (i as f32 + 0.5) * TAU / AZIMUTHS as f32))
+        .collect();
+    let share = 1.0 / AZIMUTHS as f32;
+    let slabs = (0..voxels.extinction.len()).map(|v| each.iter().map(|e| e.0[v]).sum::<f32>() * share).collect();
+    let skin = (0..voxels.size * voxels.size).map(|v| each.iter().map(|e| e.1[v]).sum::<f32>() * share).collect();
+    (slabs, skin)
+}
+
+/// The same for one azimuth. Goes down slab by slab: the optical depth above a voxel is that above the voxel which the
+/// ray reaches one slab higher, plus that slab's own.
+fn towards(voxels: &Voxels, ends: &[f32], azimuth_rad: f32) -> (Vec<f32>, Vec<f32>) {
+    let (sin, cos) = libm::sincosf(azimuth_rad);
+    let direction = crate::math::Vec3::new(cos, sin, 1.0) * FRAC_1_SQRT_2;
+    let size = voxels.size as i64;
+    let run = voxels.slab_m / (voxels.edge_m / voxels.size as f32);
+    // Whole texels, rounded so that the error does not add up over the slabs.
+    let reach = |slab: usize| ((cos * run * slab as f32).round() as i64, (sin * run * slab as f32).round() as i64);
+    let shifted = |texel: usize, (dx, dy): (i64, i64)| {
+        let (x, y) = (texel as i64 % size + dx, texel as i64 / size + dy);
+        (y.rem_euclid(size) * size + x.rem_euclid(size)) as usize
+    };
     let n = voxels.size * voxels.size;
-    (0..voxels.slabs * n).into_par_iter().map(|i| at_voxel(voxels, ends, i / n, i % n)).collect()
-}
-
-/// T₀ on the skin, `[y][x]`.
-pub fn transmittance_at_skin(voxels: &Voxels, ends: &[f32]) -> Vec<f32> {
-    let below = |texel: usize| mean_over_azimuths(|a| (-march(voxels, ends, 0, 0.0, texel, a)).exp());
-    (0..voxels.size * voxels.size).into_par_iter().map(below).collect()
-}
-
-fn at_voxel(voxels: &Voxels, ends: &[f32], slab: usize, texel: usize) -> f32 {
-    // Half of the own slab, then the slabs above.
-    mean_over_azimuths(|a| (-march(voxels, ends, slab, 0.5, texel, a)).exp())
-}
-
-fn mean_over_azimuths(f: impl Fn(f32) -> f32) -> f32 {
-    let turn = std::f32::consts::TAU / AZIMUTHS as f32;
-    (0..AZIMUTHS).map(|i| f((i as f32 + 0.5) * turn)).sum::<f32>() / AZIMUTHS as f32
-}
-
-/// Optical depth at 45° towards `azimuth`, from height `skip` (in slabs) above the bottom of `slab` to the top.
-fn march(voxels: &Voxels, ends: &[f32], slab: usize, skip: f32, texel: usize, azimuth: f32) -> f32 {
-    let (sin, cos) = libm::sincosf(azimuth);
-    let out = Vec2::new(cos, sin);
-    let direction = (out * FRAC_1_SQRT_2).extend(FRAC_1_SQRT_2);
-    let texel_m = voxels.edge_m / voxels.size as f32;
-    let start = Vec2::new((texel % voxels.size) as f32, (texel / voxels.size) as f32) + 0.5;
-    let mask = voxels.size as i64 - 1;
-    let mut depth = 0.0;
-    for s in slab..voxels.slabs {
-        let part = if s == slab { 1.0 - skip } else { 1.0 };
-        // Two samples a slab: at 45° a slab's run is often more than a texel.
-        for half in [0.25, 0.75] {
-            let rise = (s - slab) as f32 + if s == slab { skip + part * half } else { half } - skip;
-            let p = start + out * (rise * voxels.slab_m / texel_m);
-            let (x, y) = (p.x.floor() as i64 & mask, p.y.floor() as i64 & mask);
-            let voxel = (s * voxels.size + y as usize) * voxels.size + x as usize;
-            let (a, along) = (voxels.extinction[voxel], direction.dot(voxels.tangent[voxel]));
-            let sides = (a * a - along * along).max(0.0).sqrt() * voxels.slab_m / FRAC_1_SQRT_2;
-            depth += 0.5 * part * (sides + ends[voxel]);
+    let mut above = vec![0.0_f32; n];
+    let mut result = vec![0.0; voxels.slabs * n];
+    for slab in (0..voxels.slabs).rev() {
+        let (low, high) = (reach(slab), reach(slab + 1));
+        let step = (high.0 - low.0, high.1 - low.1);
+        let beyond: Vec<f32> = (0..n).map(|texel| above[shifted(texel, step)]).collect();
+        for texel in 0..n {
+            let v = slab * n + texel;
+            let (a, along) = (voxels.extinction[v], direction.dot(voxels.tangent[v]));
+            let own = (a * a - along * along).max(0.0).sqrt() * voxels.slab_m / FRAC_1_SQRT_2 + ends[v];
+            result[v] = libm::expf(-0.5 * own - beyond[texel]);
+            above[texel] = own + beyond[texel];
         }
     }
-    depth
+    (result, above.into_iter().map(|t| libm::expf(-t)).collect())
 }
