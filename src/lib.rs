@@ -6,6 +6,7 @@ pub mod coat;
 pub mod data;
 pub mod error;
 pub mod fur;
+pub mod gpu;
 pub mod math;
 pub mod preset;
 pub mod render;

@@ -1,3 +1,5 @@
 //! The one test binary; each module says what it holds.
 
 mod accuracy;
+mod coats;
+mod runtime;
