@@ -50,7 +50,17 @@ pub struct Preset {
     pub fins: FinParameters,
 }
 
-const BUILT_IN: &[(&str, &str)] = &[];
+const BUILT_IN: &[(&str, &str)] = &[
+    ("bear", include_str!("../presets/bear.toml")),
+    ("fox", include_str!("../presets/fox.toml")),
+    ("grass", include_str!("../presets/grass.toml")),
+    ("mink", include_str!("../presets/mink.toml")),
+    ("otter-wet", include_str!("../presets/otter-wet.toml")),
+    ("plush", include_str!("../presets/plush.toml")),
+    ("rabbit", include_str!("../presets/rabbit.toml")),
+    ("sheep", include_str!("../presets/sheep.toml")),
+    ("short-cat", include_str!("../presets/short-cat.toml")),
+];
 
 impl Preset {
     /// Names of the built-in presets.
