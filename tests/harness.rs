@@ -1,6 +1,7 @@
 //! Tests of the tests: every comparison must catch a planted fault.
 
 use crate::architecture::breaches;
+use crate::docs::first_difference;
 
 fn breaches_of(path: &str, text: &str) -> Vec<String> {
     breaches(&[(path.to_owned(), text.to_owned())])
@@ -29,5 +30,13 @@ fn the_floors_allow_what_they_should() {
         ("coat/shells/mod.rs", "use super::fins;\nuse crate::{data::coat::Coat, render};"),
     ] {
         assert_eq!(breaches_of(path, text), Vec::<String>::new());
+    }
+}
+
+#[test]
+fn a_page_that_differs_by_a_letter_or_a_line_is_not_current() {
+    assert_eq!(first_difference("a\nb\n", "a\nb\n"), None);
+    for kept in ["", "a\nc\n", "a\n", "a\nb\nc\n", "a\nb"] {
+        assert!(first_difference(kept, "a\nb\n").is_some(), "{kept:?}");
     }
 }

@@ -4,8 +4,10 @@
 
 mod accuracy;
 mod architecture;
+mod cli;
 mod coats;
 mod common;
+mod docs;
 mod harness;
 mod presets;
 mod runtime;

@@ -1,5 +1,7 @@
 //! The built-in presets: each reads, names itself, and describes hair that can exist.
 
+use furrier::error::Kind;
+use furrier::fur::groom::{Comb, Length};
 use furrier::preset::Preset;
 
 #[test]
@@ -41,4 +43,62 @@ fn hair_fits_on_its_skin_and_in_its_tile() {
             assert!((0.002..0.5).contains(&share), "{name}: hair is {share} of the animal's size");
         }
     }
+}
+
+fn set(preset: &str, settings: &[&str]) -> furrier::Result<Preset> {
+    Preset::load(preset)?.with_settings(&settings.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>())
+}
+
+#[test]
+fn settings_change_what_they_name_and_nothing_else() {
+    let mut expected = Preset::load("fox").unwrap();
+    assert_eq!(set("fox", &[]).unwrap(), expected);
+    expected.guard.length = Length::Relative(0.02);
+    expected.groom.comb = Comb::Gravity;
+    expected.undercoat.density_per_cm2 = 12.0;
+    expected.colour.tint = [0.1, 0.2, 0.3];
+    let settings = [
+        "guard.length.relative=0.02",
+        "groom.comb=gravity",
+        "undercoat.density_per_cm2 = 12",
+        "colour.tint=[0.1, 0.2, 0.3]",
+    ];
+    assert_eq!(set("fox", &settings).unwrap(), expected);
+}
+
+#[test]
+fn a_setting_that_cannot_be_is_refused_by_name() {
+    for setting in [
+        "guard.diameter=1",
+        "guard",
+        "guard.diameter_um=thick",
+        "guard.diameter_um=-1",
+        "guard.diameter_um=nan",
+        "name.x=1",
+        "=1",
+        "groom.comb=sideways",
+        "guard.length.mm=1\nsize_m = 2",
+    ] {
+        let error = set("fox", &[setting]).expect_err(setting);
+        assert_eq!(error.kind, Kind::Usage, "{setting}");
+        assert!(error.field.is_some() && error.found.is_some(), "{setting}: {error}");
+    }
+}
+
+#[test]
+fn a_preset_file_is_found_named_and_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.toml");
+    std::fs::write(&path, "size_m = 1.0\nmaps = { length = \"length.png\" }").unwrap();
+    let preset = Preset::load(path.to_str().unwrap()).unwrap();
+    assert_eq!(preset.name, "mine");
+    assert_eq!(preset.maps.length, Some(folder.path().join("length.png")));
+
+    std::fs::write(&path, "size_m = 1.0\n[guard]\nlenght = { mm = 3 }").unwrap();
+    let error = Preset::load(path.to_str().unwrap()).unwrap_err();
+    assert_eq!(error.file.as_deref(), Some(path.as_path()));
+    assert!(error.found.unwrap().contains("lenght"));
+
+    let error = Preset::load("foxx").unwrap_err();
+    assert!(error.expected.unwrap().contains("fox, grass"));
 }
