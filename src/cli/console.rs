@@ -8,6 +8,7 @@ use tracing_subscriber::EnvFilter;
 /// The two streams and what the user asked of them.
 pub struct Console {
     json: bool,
+    quiet: bool,
 }
 
 impl Console {
@@ -26,7 +27,7 @@ impl Console {
             .with_target(false)
             .without_time()
             .init();
-        Self { json }
+        Self { json, quiet }
     }
 
     /// Prints a command's result: `value` as JSON where asked for, else what `text` writes.
@@ -45,6 +46,23 @@ impl Console {
                 Err(Error::new(Kind::Output, "the result could not be printed").with_found(error))
             }
             _ => Ok(()),
+        }
+    }
+
+    /// Prints what the user should know but need not act on.
+    pub fn note(&self, text: &str) {
+        self.aside(format_args!("{text}"));
+    }
+
+    /// Prints what may not be as the user expects.
+    pub fn warning(&self, text: &str) {
+        self.aside(format_args!("warning: {text}"));
+    }
+
+    fn aside(&self, line: std::fmt::Arguments) {
+        if !self.quiet {
+            // A stderr that cannot be written has nobody left to tell.
+            let _ = writeln!(io::stderr(), "{line}");
         }
     }
 

@@ -2,6 +2,7 @@
 
 mod completions;
 mod console;
+mod devices;
 mod presets;
 
 use crate::error::{Kind, Result};
@@ -30,6 +31,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Presets(presets::Presets),
+    Devices(devices::Devices),
     Completions(completions::Completions),
 }
 
@@ -75,6 +77,7 @@ impl Command {
     fn run(self, console: &Console) -> Result<()> {
         match self {
             Self::Presets(command) => command.run(console),
+            Self::Devices(command) => command.run(console),
             Self::Completions(command) => command.run(console),
         }
     }
