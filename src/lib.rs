@@ -2,10 +2,12 @@
 //!
 //! The folders are the pipeline, read top to bottom in `docs/architecture.md`; a file imports only from lower floors.
 
+pub mod cli;
 pub mod coat;
 pub mod data;
 pub mod error;
 pub mod fur;
+pub mod gpu;
 pub mod math;
 pub mod preset;
 pub mod render;

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::fur::groom::{Colour, Groom, Guard, Undercoat};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Images over the mesh's first UV set, named relative to the preset's file; each multiplies or replaces a field.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -32,7 +32,7 @@ pub struct Preset {
     pub name: String,
     /// One line on what it is.
     pub description: String,
-    /// Bounding diagonal of the animal or thing that the lengths describe, m.
+    /// Bounding diagonal of the animal or thing that the lengths describe, m; every preset must give it.
     pub size_m: f32,
     /// Guard hair.
     pub guard: Guard,
@@ -50,7 +50,20 @@ pub struct Preset {
     pub fins: FinParameters,
 }
 
-const BUILT_IN: &[(&str, &str)] = &[];
+/// Presets are written by hand: anything larger than this many bytes is another kind of file.
+const LARGEST_FILE: u64 = 1 << 20;
+
+const BUILT_IN: &[(&str, &str)] = &[
+    ("bear", include_str!("../presets/bear.toml")),
+    ("fox", include_str!("../presets/fox.toml")),
+    ("grass", include_str!("../presets/grass.toml")),
+    ("mink", include_str!("../presets/mink.toml")),
+    ("otter-wet", include_str!("../presets/otter-wet.toml")),
+    ("plush", include_str!("../presets/plush.toml")),
+    ("rabbit", include_str!("../presets/rabbit.toml")),
+    ("sheep", include_str!("../presets/sheep.toml")),
+    ("short-cat", include_str!("../presets/short-cat.toml")),
+];
 
 impl Preset {
     /// Names of the built-in presets.
@@ -61,6 +74,75 @@ impl Preset {
     /// The text of a built-in preset's file.
     pub fn source(name: &str) -> Option<&'static str> {
         BUILT_IN.iter().find(|(n, _)| *n == name).map(|(_, text)| *text)
+    }
+
+    /// The TOML text behind a built-in preset's name or a file's path; a built-in name wins.
+    ///
+    /// # Errors
+    /// Where there is neither, naming the presets there are, or the file cannot be read.
+    pub fn source_of(name_or_file: &str) -> Result<String> {
+        if let Some(text) = Self::source(name_or_file) {
+            return Ok(text.to_owned());
+        }
+        let path = Path::new(name_or_file);
+        let unreadable = |what: &str| Error::input(what).with_file(path);
+        match std::fs::metadata(path) {
+            Ok(about) if about.len() > LARGEST_FILE => Err(unreadable("the preset file is too large")
+                .with_found(format!("{} bytes", about.len()))
+                .with_expected(format!("at most {LARGEST_FILE} bytes"))),
+            Ok(_) => std::fs::read_to_string(path)
+                .map_err(|e| unreadable("the preset file cannot be read").with_found(e).with_expected("UTF-8 text")),
+            Err(_) => Err(Error::usage("there is no such preset")
+                .with_field("--preset")
+                .with_found(name_or_file)
+                .with_expected(format!("a TOML file or one of {}", Self::names().collect::<Vec<_>>().join(", ")))
+                .with_hint("`furrier presets list` says what each is")),
+        }
+    }
+
+    /// The built-in preset of that name, or the one in that file: checked, named, its groom maps found relative to the
+    /// file.
+    ///
+    /// # Errors
+    /// As [`Self::source_of`] and [`Self::from_toml`].
+    pub fn load(name_or_file: &str) -> Result<Self> {
+        let text = Self::source_of(name_or_file)?;
+        if Self::source(name_or_file).is_some() {
+            return Self::from_toml(&text);
+        }
+        let path = Path::new(name_or_file);
+        let mut preset = Self::from_toml(&text).map_err(|e| e.with_file(path))?;
+        if preset.name.is_empty() {
+            preset.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        }
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let maps = &mut preset.maps;
+        for map in [&mut maps.density, &mut maps.length, &mut maps.comb, &mut maps.colour, &mut maps.clump] {
+            *map = map.take().map(|relative| folder.join(relative));
+        }
+        Ok(preset)
+    }
+
+    /// This preset with settings of the form `table.key=value` applied in order. A value is TOML; a bare word is a
+    /// string. Setting a length in one unit drops it in the other.
+    ///
+    /// # Errors
+    /// Names the setting that is malformed, unknown or out of range.
+    pub fn with_settings(self, settings: &[String]) -> Result<Self> {
+        let fault = |setting: &str, found: &dyn std::fmt::Display| {
+            Error::usage("the setting is not valid")
+                .with_field(format!("--set {setting}"))
+                .with_found(found)
+                .with_hint("write table.key=value, as in `--set guard.length.mm=30`; docs/presets.md lists the keys")
+        };
+        let mut preset = self;
+        for setting in settings {
+            let (key, value) = setting.split_once('=').ok_or_else(|| fault(setting, &"no `=`"))?;
+            let mut table = toml::Table::try_from(&preset).map_err(|e| fault(setting, &e))?;
+            set(&mut table, key.trim(), toml_value(value.trim())).map_err(|e| fault(setting, &e))?;
+            preset = table.try_into().map_err(|e: toml::de::Error| fault(setting, &e.message()))?;
+        }
+        preset.checked()
     }
 
     /// Reads a preset from TOML. Unknown keys fail; every number is checked against its range.
@@ -135,5 +217,33 @@ impl Preset {
         self.shells.check()?;
         self.fins.check()?;
         Ok(self)
+    }
+}
+
+/// `text` as a TOML value, or as a string where it is none.
+fn toml_value(text: &str) -> toml::Value {
+    toml::from_str::<toml::Table>(&format!("value = {text}"))
+        .ok()
+        .filter(|table| table.len() == 1)
+        .and_then(|mut table| table.remove("value"))
+        .unwrap_or_else(|| toml::Value::String(text.to_owned()))
+}
+
+/// Puts `value` at the dotted `key` of `table`.
+fn set(table: &mut toml::Table, key: &str, value: toml::Value) -> std::result::Result<(), String> {
+    match key.split_once('.') {
+        None => {
+            table.insert(key.to_owned(), value);
+            Ok(())
+        }
+        Some((head, rest)) => {
+            let inner = table.entry(head).or_insert_with(|| toml::Value::Table(toml::Table::new()));
+            let inner = inner.as_table_mut().ok_or_else(|| format!("`{head}` is not a table"))?;
+            // A length is one value in one of two units, not a table of two.
+            if head == "length" {
+                inner.clear();
+            }
+            set(inner, rest, value)
+        }
     }
 }

@@ -1,3 +1,13 @@
 //! The one test binary; each module says what it holds.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "what a test measures and why it was left out is printed")]
 
 mod accuracy;
+mod architecture;
+mod cli;
+mod coats;
+mod common;
+mod docs;
+mod harness;
+mod presets;
+mod runtime;

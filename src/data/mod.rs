@@ -1,5 +1,6 @@
 //! Floor 1: the plain data that one step hands to the next. Checked once, at construction.
 
+pub mod camera;
 pub mod coat;
 pub mod fields;
 pub mod film;

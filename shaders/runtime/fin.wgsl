@@ -1,0 +1,104 @@
+// Fins: quads on edges near the silhouette, with hair seen from the side (Lengyel et al. 2001 §2.3).
+#import furrier::view::{view, ray_direction}
+#import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
+#import furrier::coat::{CoatVertex, tile}
+
+struct FinEdge {
+    // Coat vertices of its ends.
+    ends: vec2<u32>,
+    // Interval of the fin texture.
+    u: vec2<f32>,
+    // Thickness of hair it stands for over the texture's.
+    thickness: f32,
+}
+
+@group(2) @binding(0) var<storage, read> vertices: array<CoatVertex>;
+@group(2) @binding(1) var<storage, read> fins: array<FinEdge>;
+@group(3) @binding(0) var fin_sampler: sampler;
+@group(3) @binding(1) var fin_albedo: texture_2d_array<f32>;
+@group(3) @binding(2) var fin_tangent: texture_2d_array<f32>;
+
+struct Varyings {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) position_m: vec3<f32>,
+    @location(1) uv: vec2<f32>,
+    @location(2) offset_m: vec3<f32>,
+    @location(3) normal: vec3<f32>,
+    @location(4) tint: vec4<f32>,
+    @location(5) @interpolate(flat) along: vec3<f32>,
+    @location(6) @interpolate(flat) across: vec3<f32>,
+    // Optical depth over the texture's.
+    @location(7) @interpolate(flat) weight: f32,
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> Varyings {
+    let fin = fins[index / 6u];
+    // Two triangles of the quad (end, height): 00 10 01, 01 10 11.
+    var corners = array(vec2(0u, 0u), vec2(1u, 0u), vec2(0u, 1u), vec2(0u, 1u), vec2(1u, 0u), vec2(1u, 1u));
+    let corner = corners[index % 6u];
+    let start = vertices[fin.ends.x];
+    let end = vertices[fin.ends.y];
+    let edge = end.position_m - start.position_m;
+    let rise = 0.5 * (start.offset_m + end.offset_m);
+    let middle = 0.5 * (start.position_m + end.position_m + rise);
+
+    let across = cross(edge, rise);
+    let size = length(across);
+    let facing = abs(dot(across, ray_direction(middle))) / max(size, 1e-20);
+    let weight = max(0.0, 2.0 * facing - 1.0);
+
+    var own = start;
+    if corner.x == 1u {
+        own = end;
+    }
+    let height = f32(corner.y);
+    var out: Varyings;
+    out.position_m = own.position_m + height * own.offset_m;
+    out.uv = vec2(select(fin.u.x, fin.u.y, corner.x == 1u), 1.0 - height);
+    out.offset_m = own.offset_m;
+    out.normal = own.normal;
+    out.tint = own.tint;
+    out.along = normalize(edge + vec3(0.0, 0.0, 1e-20));
+    out.across = across / max(size, 1e-20);
+    // A slab of hair seen aslant is as much thicker.
+    out.weight = fin.thickness * weight / max(facing, 0.5);
+    if weight > 0.0 && size > 0.0 {
+        out.clip = view.clip_from_world * vec4(out.position_m, 1.0);
+    } else {
+        out.clip = vec4(0.0, 0.0, -1.0, 1.0);
+    }
+    return out;
+}
+
+@fragment
+fn fragment(in: Varyings) -> @location(0) vec4<f32> {
+    let surface = textureSample(fin_albedo, fin_sampler, in.uv, 0);
+    let medium = textureSample(fin_tangent, fin_sampler, in.uv, 0);
+    let present = in.tint.w * smoothstep(0.0, 0.01, length(in.offset_m) / tile.height_m);
+    let depth = -log(max(1.0 - surface.a, 1e-3)) * in.weight * present;
+    let opacity = 1.0 - exp(-depth);
+    if opacity < 0.002 {
+        discard;
+    }
+
+    let stored = (medium.xyz * 255.0 - 128.0) / 127.0;
+    let agreement = min(length(stored), 1.0);
+    let up = normalize(in.offset_m);
+    let tangent = normalize(stored.x * in.along + stored.y * in.across + stored.z * up + up * 1e-6) * agreement;
+    let world_ray = ray_direction(in.position_m);
+    let normal = normalize(in.normal);
+    let hair = Hair(surface.rgb * in.tint.rgb, tangent, normal, -world_ray);
+    let outside_depth = -log(max(medium.a, 1e-3)) * present;
+    var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
+    for (var i = 0u; i < view.light_count; i++) {
+        let light = view.lights[i];
+        let cos_light = dot(normal, light.to_light);
+        let along_light = dot(tangent, light.to_light);
+        let lateral = sqrt(max(0.0, 1.0 - along_light * along_light)) / max(abs(cos_light), 0.02);
+        let shadow = exp(-outside_depth * lateral);
+        radiance += above_horizon(cos_light) * light.irradiance
+            * scattered(hair, light.to_light, shadow, multiply_scattered(shadow, hair.albedo));
+    }
+    return vec4(radiance * opacity, opacity);
+}

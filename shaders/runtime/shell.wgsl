@@ -1,0 +1,112 @@
+// Shells: slab after slab of the coat, each drawn at its middle height.
+#import furrier::view::{view, ray_direction}
+#import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
+#import furrier::coat::{CoatVertex, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, frame, ray_in_tile, lateral,
+    ends_met, footprint, run_through_slab, gain, decode_medium, fin_share}
+
+// Which side of the shells this pass draws: the far one first, outer to inner, then the near one, inner to outer.
+override NEAR_SIDE: bool = true;
+// Whether fins are drawn too and take their share.
+override WITH_FINS: bool = true;
+// An opacity that no eight-bit picture shows; writing depth for it would hide hair behind it.
+const INVISIBLE: f32 = 0.002;
+
+@group(2) @binding(0) var<storage, read> vertices: array<CoatVertex>;
+@group(2) @binding(1) var<storage, read> indices: array<u32>;
+
+struct Varyings {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) position_m: vec3<f32>,
+    @location(1) uv: vec2<f32>,
+    @location(2) offset_m: vec3<f32>,
+    @location(3) normal: vec3<f32>,
+    @location(4) tint: vec4<f32>,
+    // What one metre of the tile becomes on this triangle at this height.
+    @location(5) @interpolate(flat) x_axis: vec3<f32>,
+    @location(6) @interpolate(flat) y_axis: vec3<f32>,
+    @location(7) @interpolate(flat) layer: u32,
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32) -> Varyings {
+    let first = index - index % 3u;
+    let a = vertices[indices[first]];
+    let b = vertices[indices[first + 1u]];
+    let c = vertices[indices[first + 2u]];
+    let height = (f32(layer) - 0.5) / f32(tile.layers - 1u);
+    let at_a = a.position_m + height * a.offset_m;
+    let edge_b = b.position_m + height * b.offset_m - at_a;
+    let edge_c = c.position_m + height * c.offset_m - at_a;
+
+    // The triangle's axes: edges are U du + V dv, solved for U and V.
+    let uv_b = vec2(b.u - a.u, b.v - a.v) * tile.edge_m;
+    let uv_c = vec2(c.u - a.u, c.v - a.v) * tile.edge_m;
+    let area = uv_b.x * uv_c.y - uv_c.x * uv_b.y;
+    let scale = select(0.0, 1.0 / area, abs(area) > 1e-30);
+
+    let own = vertices[indices[index]];
+    var out: Varyings;
+    out.position_m = own.position_m + height * own.offset_m;
+    out.uv = vec2(own.u, own.v);
+    out.offset_m = own.offset_m;
+    out.normal = own.normal;
+    out.tint = own.tint;
+    out.x_axis = (edge_b * uv_c.y - edge_c * uv_b.y) * scale;
+    out.y_axis = (edge_c * uv_b.x - edge_b * uv_c.x) * scale;
+    out.layer = layer;
+
+    // Which side is seen follows from the offsets, not from the winding, so mirrored parts need no care.
+    let face = cross(edge_b, edge_c);
+    let outwards = face * sign(dot(face, a.offset_m + b.offset_m + c.offset_m));
+    let seen_from_outside = dot(outwards, ray_direction(at_a)) < 0.0;
+    if seen_from_outside == NEAR_SIDE && scale != 0.0 {
+        out.clip = view.clip_from_world * vec4(out.position_m, 1.0);
+    } else {
+        out.clip = vec4(0.0, 0.0, -1.0, 1.0);
+    }
+    return out;
+}
+
+@fragment
+fn fragment(in: Varyings) -> @location(0) vec4<f32> {
+    let uv_dx = dpdx(in.uv);
+    let uv_dy = dpdy(in.uv);
+    let length_factor = length(in.offset_m) / tile.height_m;
+    let at = frame(in.x_axis, in.y_axis, in.offset_m / tile.height_m);
+    let world_ray = ray_direction(in.position_m);
+    let ray = ray_in_tile(at, world_ray);
+    let slab_m = tile.height_m / f32(tile.layers - 1u);
+
+    let spot = footprint(uv_dx, uv_dy, run_through_slab(ray, slab_m, slopes[in.layer]));
+    let layer = i32(in.layer);
+    let medium = decode_medium(textureSampleGrad(medium_texture, hair_sampler, in.uv, layer, spot.major, spot.minor));
+    let ends = textureSampleGrad(ends_texture, hair_sampler, in.uv, layer, spot.major, spot.minor).r;
+    let surface = textureSampleGrad(albedo_texture, hair_sampler, in.uv, layer, spot.major, spot.minor);
+
+    // τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], model e of docs/steps/shells.md.
+    let through = medium.extinction_per_m * slab_m * lateral(at, ray, medium.tangent);
+    let end_depth = -log(max(1.0 - ends, 1e-3)) * ends_met(at, world_ray);
+    let normal = normalize(in.normal);
+    let kept = select(1.0, 1.0 - fin_share(dot(normal, world_ray)), WITH_FINS);
+    // Skin without hair has offsets of length 0; the last hundredth fades.
+    let present = in.tint.w * smoothstep(0.0, 0.01, length_factor);
+    let depth = gain(spot.level, ray.cosine) * (through + end_depth) * present * kept;
+    let opacity = 1.0 - exp(-depth);
+    if opacity < INVISIBLE {
+        discard;
+    }
+
+    let agreement = length(medium.tangent);
+    let tangent = normalize(at.world_from_tile * medium.tangent + vec3(0.0, 0.0, 1e-9)) * agreement;
+    let hair = Hair(surface.rgb * in.tint.rgb, tangent, normal, -world_ray);
+    let outside_depth = -log(max(surface.a, 1e-3)) * present;
+    var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
+    for (var i = 0u; i < view.light_count; i++) {
+        let light = view.lights[i];
+        let light_ray = ray_in_tile(at, light.to_light);
+        let shadow = exp(-outside_depth * lateral(at, light_ray, medium.tangent));
+        let seen = above_horizon(dot(normal, light.to_light));
+        radiance += seen * light.irradiance * scattered(hair, light.to_light, shadow, multiply_scattered(shadow, hair.albedo));
+    }
+    return vec4(radiance * opacity, opacity);
+}

@@ -1,0 +1,52 @@
+// Skin: opaque, with the base colour of the asset; under a coat it lies in the coat's shadow.
+#import furrier::view::{view, ray_direction}
+#import furrier::shading::{skin_radiance, above_horizon}
+#import furrier::coat::{hair_sampler, albedo_texture}
+
+@group(2) @binding(0) var base_sampler: sampler;
+@group(2) @binding(1) var base_texture: texture_2d_array<f32>;
+
+struct Varyings {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) position_m: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) colour: vec3<f32>,
+    @location(3) uv: vec2<f32>,
+    @location(4) coat_uv: vec2<f32>,
+    @location(5) coat_density: f32,
+}
+
+@vertex
+fn vertex(
+    @location(0) position_m: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) colour: vec3<f32>,
+    @location(3) uv: vec2<f32>,
+    @location(4) coat_uv: vec2<f32>,
+    @location(5) coat_density: f32,
+) -> Varyings {
+    let clip = view.clip_from_world * vec4(position_m, 1.0);
+    return Varyings(clip, position_m, normal, colour, uv, coat_uv, coat_density);
+}
+
+@fragment
+fn fragment(in: Varyings) -> @location(0) vec4<f32> {
+    let albedo = in.colour * textureSample(base_texture, base_sampler, in.uv, 0).rgb;
+    let transmittance = textureSample(albedo_texture, hair_sampler, in.coat_uv, 0).a;
+    let world_ray = ray_direction(in.position_m);
+    let turned = normalize(in.normal);
+    let normal = select(turned, -turned, dot(turned, world_ray) > 0.0);
+    let outside_depth = -log(max(transmittance, 1e-3)) * in.coat_density;
+    let gloss = select(1.0, 0.0, in.coat_density > 0.0);
+
+    var radiance = albedo * view.ambient * exp(-outside_depth);
+    for (var i = 0u; i < view.light_count; i++) {
+        let light = view.lights[i];
+        let cos_light = dot(turned, light.to_light);
+        // Upright hair of which 45 degrees is the stored case: tan θ.
+        let slope = sqrt(max(0.0, 1.0 - cos_light * cos_light)) / max(abs(cos_light), 0.02);
+        let shadow = exp(-outside_depth * max(slope, 0.3));
+        radiance += light.irradiance * shadow * skin_radiance(albedo, normal, -world_ray, light.to_light, gloss);
+    }
+    return vec4(radiance, 1.0);
+}

@@ -1,0 +1,84 @@
+//! Floor 9: the command line. One file per subcommand: parse, call the library, print.
+
+mod completions;
+mod console;
+mod devices;
+mod presets;
+
+use crate::error::{Kind, Result};
+use clap::{CommandFactory, Parser, Subcommand};
+use console::Console;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// Bakes fur for games: a mesh and a preset in, the same asset with shells and fins out
+#[derive(Debug, Parser)]
+#[command(name = "furrier", version, propagate_version = true, after_long_help = AFTER_HELP)]
+struct Cli {
+    /// Print nothing but results and errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Say on stderr what is being done; twice for every detail
+    #[arg(short, long, global = true, action = clap::ArgAction::Count)]
+    verbose: u8,
+    /// Print the result as JSON on stdout, and nothing else there
+    #[arg(long, global = true)]
+    json: bool,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Presets(presets::Presets),
+    Devices(devices::Devices),
+    Completions(completions::Completions),
+}
+
+const AFTER_HELP: &str = "\
+Exit codes:
+  0  done
+  1  a comparison exceeded its limit
+  2  the command line or a preset asks for something impossible
+  3  an input file is missing, broken or unsupported
+  4  an output could not be written
+  5  there is no graphics adapter, or it failed
+
+Results go to stdout; progress, warnings and errors to stderr.";
+
+/// Runs the command line `arguments` (the program's name first) and returns the exit code: 0, or that of the failure's
+/// [`Kind`].
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version are no failures; where they cannot be printed there is nobody left to tell.
+            let _ = error.print();
+            return if error.use_stderr() { ExitCode::from(Kind::Usage.exit_code()) } else { ExitCode::SUCCESS };
+        }
+    };
+    let console = Console::new(cli.quiet, cli.verbose, cli.json);
+    match cli.command.run(&console) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            let code = error.kind.exit_code();
+            console.error(error);
+            ExitCode::from(code)
+        }
+    }
+}
+
+/// The command line's definition, from which help, completions and `docs/cli.md` are made.
+pub fn definition() -> clap::Command {
+    Cli::command()
+}
+
+impl Command {
+    fn run(self, console: &Console) -> Result<()> {
+        match self {
+            Self::Presets(command) => command.run(console),
+            Self::Devices(command) => command.run(console),
+            Self::Completions(command) => command.run(console),
+        }
+    }
+}

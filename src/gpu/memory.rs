@@ -1,0 +1,160 @@
+//! Buffers and textures: made, filled, read back.
+
+use super::Gpu;
+use crate::data::image::Image8;
+use crate::error::{Error, Kind, Result};
+use wgpu::util::DeviceExt;
+
+/// A texture of one or more layers, with mips, and the bytes it holds.
+pub struct TextureArray {
+    /// All layers and mips, as a 2D array.
+    pub view: wgpu::TextureView,
+    /// Memory of all layers and mips.
+    pub bytes: u64,
+}
+
+impl Gpu {
+    /// A buffer with `contents`; never empty, because an empty one cannot be bound.
+    pub fn buffer<T: bytemuck::NoUninit>(&self, label: &str, contents: &[T], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let bytes: &[u8] = bytemuck::cast_slice(contents);
+        let placeholder = [0_u8; 256];
+        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some(label),
+            contents: if bytes.is_empty() { &placeholder } else { bytes },
+            usage,
+        })
+    }
+
+    /// A 2D array texture of `images[mip][layer]`, four channels or one; `srgb` says how four channels are coded.
+    ///
+    /// # Errors
+    /// [`Kind::Input`] where the images are not a chain of halved, equally long mips, naming the first that is not;
+    /// [`Kind::Device`] where the adapter cannot hold as many layers or texels.
+    pub fn texture_array(&self, label: &str, images: &[Vec<Image8>], srgb: bool) -> Result<TextureArray> {
+        let base = images.first().and_then(|layers| layers.first());
+        let base = base.ok_or_else(|| Error::input("a texture has no images").with_field(label))?;
+        let layers = images[0].len();
+        let limits = self.device.limits();
+        if layers as u32 > limits.max_texture_array_layers || base.width.max(base.height) > limits.max_texture_dimension_2d {
+            return Err(Error::new(Kind::Device, "a texture is too large for this adapter")
+                .with_field(label)
+                .with_found(format!("{} x {} texels, {layers} layers", base.width, base.height))
+                .with_expected(format!(
+                    "at most {0} x {0} texels, {1} layers",
+                    limits.max_texture_dimension_2d, limits.max_texture_array_layers
+                )));
+        }
+        let format = match (base.channels, srgb) {
+            (1, _) => wgpu::TextureFormat::R8Unorm,
+            (_, true) => wgpu::TextureFormat::Rgba8UnormSrgb,
+            (_, false) => wgpu::TextureFormat::Rgba8Unorm,
+        };
+        let mut bytes = Vec::new();
+        for (mip, row) in images.iter().enumerate() {
+            let expected = [(base.width >> mip).max(1), (base.height >> mip).max(1), base.channels];
+            for (layer, image) in row.iter().enumerate() {
+                if [image.width, image.height, image.channels] != expected || row.len() != layers {
+                    return Err(Error::input("a mip of a texture has the wrong size")
+                        .with_field(format!("{label}[{mip}][{layer}]"))
+                        .with_found(format!("{} x {} x {}, {} layers", image.width, image.height, image.channels, row.len()))
+                        .with_expected(format!("{} x {} x {}, {layers} layers", expected[0], expected[1], expected[2])));
+                }
+                bytes.extend_from_slice(&image.pixels);
+            }
+        }
+        let descriptor = wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: base.width, height: base.height, depth_or_array_layers: layers as u32 },
+            mip_level_count: images.len() as u32,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        };
+        let order = wgpu::util::TextureDataOrder::MipMajor;
+        let texture = self.device.create_texture_with_data(&self.queue, &descriptor, order, &bytes);
+        let view = texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        });
+        Ok(TextureArray { view, bytes: bytes.len() as u64 })
+    }
+
+    /// A texture to draw into and to read in shaders or back.
+    ///
+    /// # Errors
+    /// [`Kind::Usage`] where it is larger than the adapter allows.
+    pub fn target(&self, label: &str, size: [u32; 2], format: wgpu::TextureFormat) -> Result<wgpu::Texture> {
+        let limit = self.device.limits().max_texture_dimension_2d;
+        if size.iter().any(|&edge| edge == 0 || edge > limit) {
+            return Err(Error::usage("the picture does not fit this adapter")
+                .with_field("--size")
+                .with_found(format!("{} x {} with its samples", size[0], size[1]))
+                .with_expected(format!("1 to {limit} along an edge, samples counted"))
+                .with_hint("ask for fewer pixels or fewer samples per pixel"));
+        }
+        Ok(self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC
+                | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        }))
+    }
+
+    /// The texels of a target of format `Rgba32Float`, rows from the top. Submits `encoder` first.
+    ///
+    /// # Errors
+    /// [`Kind::Device`] as [`Gpu::finish`].
+    pub fn read_rgba32(&self, mut encoder: wgpu::CommandEncoder, texture: &wgpu::Texture) -> Result<Vec<[f32; 4]>> {
+        let row_bytes = texture.width() * 16;
+        let padded = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read back"),
+            size: u64::from(padded) * u64::from(texture.height()),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &buffer,
+                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
+            },
+            texture.size(),
+        );
+        self.finish(encoder)?;
+        let bytes = self.read_buffer(&buffer)?;
+        Ok(bytes
+            .chunks_exact(padded as usize)
+            .flat_map(|row| bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&row[..row_bytes as usize]))
+            .collect())
+    }
+
+    /// The bytes of a buffer made with `MAP_READ`.
+    ///
+    /// # Errors
+    /// [`Kind::Device`] where the device was lost.
+    pub fn read_buffer(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>> {
+        let (sender, receiver) = std::sync::mpsc::channel();
+        buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+            // The receiver lives until the poll below has returned.
+            let _ = sender.send(result);
+        });
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| self.failed(error.to_string()))?;
+        receiver
+            .recv()
+            .map_err(|error| self.failed(error.to_string()))?
+            .map_err(|error| self.failed(error.to_string()))?;
+        let bytes = buffer.slice(..).get_mapped_range().map_err(|error| self.failed(error.to_string()))?.to_vec();
+        buffer.unmap();
+        Ok(bytes)
+    }
+}

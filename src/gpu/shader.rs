@@ -1,0 +1,50 @@
+//! Shaders are WGSL files that import each other by name (naga_oil).
+
+use super::Gpu;
+use crate::error::{Error, Kind, Result};
+use naga_oil::compose::{ComposableModuleDescriptor, Composer, NagaModuleDescriptor};
+use std::borrow::Cow;
+
+/// One WGSL file.
+#[derive(Clone, Copy, Debug)]
+pub struct Source {
+    /// Path below `shaders/`, for messages.
+    pub path: &'static str,
+    /// Its text.
+    pub text: &'static str,
+}
+
+/// The module of `main` with what it imports from `shared`, which must be given in order: imported before importing.
+///
+/// # Errors
+/// [`Kind::Device`] with the file and the compiler's message.
+pub fn compose(main: Source, shared: &[Source]) -> Result<wgpu::naga::Module> {
+    let mut composer = Composer::default();
+    for source in shared {
+        let described =
+            ComposableModuleDescriptor { source: source.text, file_path: source.path, ..Default::default() };
+        if let Err(error) = composer.add_composable_module(described) {
+            return Err(fault(source.path, &error.emit_to_string(&composer)));
+        }
+    }
+    let described = NagaModuleDescriptor { source: main.text, file_path: main.path, ..Default::default() };
+    composer.make_naga_module(described).map_err(|error| fault(main.path, &error.emit_to_string(&composer)))
+}
+
+fn fault(path: &str, message: &str) -> Error {
+    Error::new(Kind::Device, "a shader does not compile").with_field(format!("shaders/{path}")).with_found(message)
+}
+
+impl Gpu {
+    /// Compiles `main` for this device.
+    ///
+    /// # Errors
+    /// As [`compose`].
+    pub fn shader(&self, main: Source, shared: &[Source]) -> Result<wgpu::ShaderModule> {
+        let module = compose(main, shared)?;
+        Ok(self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(main.path),
+            source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
+        }))
+    }
+}

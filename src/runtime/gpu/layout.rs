@@ -1,0 +1,177 @@
+//! Structs as the shaders read them; `tests/shaders.rs` compares names, offsets and sizes with the WGSL.
+
+use crate::data::coat::{FinEdge, Tile};
+use crate::runtime::scene::{Fur, MAX_LIGHTS, Skin, View};
+use bytemuck::{Pod, Zeroable};
+
+/// `Light` of `shared/view.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct LightUniform {
+    /// Unit vector towards the light.
+    pub to_light: [f32; 3],
+    pub(super) _pad0: f32,
+    /// Irradiance, linear RGB.
+    pub irradiance: [f32; 3],
+    pub(super) _pad1: f32,
+}
+
+/// `View` of `shared/view.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct ViewUniform {
+    /// Columns of the matrix.
+    pub clip_from_world: [[f32; 4]; 4],
+    /// Eye or direction to it.
+    pub eye: [f32; 4],
+    /// Radiance from everywhere.
+    pub ambient: [f32; 3],
+    /// How many of `lights` count.
+    pub light_count: u32,
+    /// The lights.
+    pub lights: [LightUniform; MAX_LIGHTS],
+}
+
+impl ViewUniform {
+    /// The view's numbers; lights past [`MAX_LIGHTS`] were refused before.
+    pub fn new(view: &View) -> Self {
+        let mut lights = [LightUniform::default(); MAX_LIGHTS];
+        for (slot, (to_light, irradiance)) in lights.iter_mut().zip(&view.lights) {
+            slot.to_light = to_light.to_array();
+            slot.irradiance = irradiance.to_array();
+        }
+        Self {
+            clip_from_world: view.clip_from_world.to_cols_array_2d(),
+            eye: view.eye.to_array(),
+            ambient: view.ambient.to_array(),
+            light_count: view.lights.len().min(MAX_LIGHTS) as u32,
+            lights,
+        }
+    }
+}
+
+/// `Tile` of `shared/coat.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct TileUniform {
+    /// Length that one unit of UV stands for, m.
+    pub edge_m: f32,
+    /// Height of the stack, m.
+    pub height_m: f32,
+    /// Extinction that a stored 1 stands for, 1/m.
+    pub extinction_scale_per_m: f32,
+    /// Texels along an edge.
+    pub size: f32,
+    /// Layers, the skin counted.
+    pub layers: u32,
+    /// Mips.
+    pub mips: u32,
+}
+
+impl TileUniform {
+    /// The tile's numbers.
+    pub fn new(tile: &Tile) -> Self {
+        Self {
+            edge_m: tile.edge_m,
+            height_m: tile.height_m,
+            extinction_scale_per_m: tile.shells.extinction_scale_per_m,
+            size: tile.shells.size as f32,
+            layers: tile.shells.layers,
+            mips: tile.shells.albedo.len() as u32,
+        }
+    }
+}
+
+/// `CoatVertex` of `shared/coat.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct CoatVertex {
+    /// Position on the skin, m.
+    pub position_m: [f32; 3],
+    /// First texture coordinate.
+    pub u: f32,
+    /// Root to the top of the stack, m.
+    pub offset_m: [f32; 3],
+    /// Second texture coordinate.
+    pub v: f32,
+    /// Skin normal.
+    pub normal: [f32; 3],
+    pub(super) _pad0: f32,
+    /// Colour and density factors.
+    pub tint: [f32; 4],
+}
+
+impl CoatVertex {
+    /// The vertices of `fur`.
+    pub fn of(fur: &Fur<'_>) -> Vec<Self> {
+        (0..fur.positions_m.len())
+            .map(|i| Self {
+                position_m: fur.positions_m[i].to_array(),
+                u: fur.uv[i].x,
+                offset_m: fur.offsets_m[i].to_array(),
+                v: fur.uv[i].y,
+                normal: fur.normals[i].to_array(),
+                _pad0: 0.0,
+                tint: fur.tint[i].to_array(),
+            })
+            .collect()
+    }
+}
+
+/// `FinEdge` of `runtime/fin.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct FinInstance {
+    /// Coat vertices of its ends.
+    pub ends: [u32; 2],
+    /// Interval of the fin texture.
+    pub u: [f32; 2],
+    /// Thickness over the texture's.
+    pub thickness: f32,
+    pub(super) _pad0: f32,
+}
+
+impl From<&FinEdge> for FinInstance {
+    fn from(edge: &FinEdge) -> Self {
+        Self { ends: edge.ends, u: edge.u, thickness: edge.thickness, _pad0: 0.0 }
+    }
+}
+
+/// A vertex of `runtime/skin.wgsl`, attributes in the order of their locations.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct SkinVertex {
+    /// Position, m.
+    pub position_m: [f32; 3],
+    /// Unit normal.
+    pub normal: [f32; 3],
+    /// Linear RGB.
+    pub colour: [f32; 3],
+    /// Base colour texture coordinate.
+    pub uv: [f32; 2],
+    /// Tile texture coordinate.
+    pub coat_uv: [f32; 2],
+    /// Density factor of the coat; 0 where there is none.
+    pub coat_density: f32,
+}
+
+impl SkinVertex {
+    /// Attribute formats, by location.
+    pub const ATTRIBUTES: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![
+        0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x2, 4 => Float32x2, 5 => Float32
+    ];
+
+    /// The vertices of `skin`.
+    pub fn of(skin: &Skin<'_>) -> Vec<Self> {
+        (0..skin.positions_m.len())
+            .map(|i| Self {
+                position_m: skin.positions_m[i].to_array(),
+                normal: skin.normals[i].to_array(),
+                colour: skin.colour[i].to_array(),
+                uv: skin.uv.get(i).map_or([0.0; 2], |uv| uv.to_array()),
+                coat_uv: skin.coat_uv.get(i).map_or([0.0; 2], |uv| uv.to_array()),
+                coat_density: skin.coat_density.get(i).copied().unwrap_or(0.0),
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,204 @@
+//! The passes' shaders, bindings and fixed state.
+
+use super::layout::SkinVertex;
+use crate::error::Result;
+use crate::gpu::{Gpu, Source};
+
+macro_rules! source {
+    ($path:literal) => {
+        Source { path: $path, text: include_str!(concat!("../../../shaders/", $path)) }
+    };
+}
+
+/// Files that others import, imported ones first.
+pub const SHARED: [Source; 3] =
+    [source!("shared/view.wgsl"), source!("shared/shading.wgsl"), source!("shared/coat.wgsl")];
+/// Opaque skin.
+pub const SKIN: Source = source!("runtime/skin.wgsl");
+/// Shells.
+pub const SHELL: Source = source!("runtime/shell.wgsl");
+/// Fins.
+pub const FIN: Source = source!("runtime/fin.wgsl");
+/// Samples to pixels.
+pub const RESOLVE: Source = source!("runtime/resolve.wgsl");
+
+/// Linear light with alpha while drawing.
+pub const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Depth while drawing.
+pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// The finished picture.
+pub const RESOLVED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// Layouts of what passes bind.
+pub struct Layouts {
+    /// Group 0: camera and lights.
+    pub view: wgpu::BindGroupLayout,
+    /// Group 1: a tile.
+    pub tile: wgpu::BindGroupLayout,
+    /// Group 2 of shells and fins: geometry.
+    pub geometry: wgpu::BindGroupLayout,
+    /// Group 2 of the skin: its texture.
+    pub material: wgpu::BindGroupLayout,
+    /// Group 3 of fins: their textures.
+    pub fin: wgpu::BindGroupLayout,
+    /// Group 0 of the resolve: the samples.
+    pub samples: wgpu::BindGroupLayout,
+}
+
+impl Layouts {
+    fn new(gpu: &Gpu) -> Self {
+        use wgpu::{BindingType, BufferBindingType, SamplerBindingType, ShaderStages, TextureSampleType};
+        let buffer = |ty| BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+        let uniform = buffer(BufferBindingType::Uniform);
+        let storage = buffer(BufferBindingType::Storage { read_only: true });
+        let sampler = BindingType::Sampler(SamplerBindingType::Filtering);
+        let texture = |filterable, view_dimension| BindingType::Texture {
+            sample_type: TextureSampleType::Float { filterable },
+            view_dimension,
+            multisampled: false,
+        };
+        let array = texture(true, wgpu::TextureViewDimension::D2Array);
+        let group = |label, kinds: &[BindingType]| {
+            let entries: Vec<_> = (0..)
+                .zip(kinds)
+                .map(|(binding, &ty)| wgpu::BindGroupLayoutEntry {
+                    binding,
+                    visibility: ShaderStages::VERTEX_FRAGMENT,
+                    ty,
+                    count: None,
+                })
+                .collect();
+            gpu.device
+                .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+        };
+        Self {
+            view: group("view", &[uniform]),
+            tile: group("tile", &[uniform, storage, storage, sampler, array, array, array]),
+            geometry: group("geometry", &[storage, storage]),
+            material: group("material", &[sampler, array]),
+            fin: group("fin", &[sampler, array, array]),
+            samples: group("samples", &[texture(false, wgpu::TextureViewDimension::D2)]),
+        }
+    }
+}
+
+/// Everything that is made once per device and number of samples.
+pub struct Pipelines {
+    /// What they bind.
+    pub layouts: Layouts,
+    /// Opaque skin: tests and writes depth.
+    pub skin: wgpu::RenderPipeline,
+    /// Skin that only hides what is behind it.
+    pub skin_depth: wgpu::RenderPipeline,
+    /// Far side of the shells: tests depth; index 1 hands over to fins.
+    pub far_shells: [wgpu::RenderPipeline; 2],
+    /// Near side of the shells: tests and writes depth; index 1 hands over to fins.
+    pub near_shells: [wgpu::RenderPipeline; 2],
+    /// Fins: test depth.
+    pub fins: wgpu::RenderPipeline,
+    /// Samples to pixels.
+    pub resolve: wgpu::RenderPipeline,
+}
+
+/// What distinguishes one pass from another.
+struct Pass<'a> {
+    shader: &'a wgpu::ShaderModule,
+    groups: &'a [Option<&'a wgpu::BindGroupLayout>],
+    vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    constants: &'a [(&'a str, f64)],
+    target: wgpu::ColorTargetState,
+    writes_depth: Option<bool>,
+}
+
+impl Pipelines {
+    /// Compiles all passes for pictures of `samples`² samples per pixel.
+    ///
+    /// # Errors
+    /// [`crate::error::Kind::Device`] with the compiler's message.
+    pub fn new(gpu: &Gpu, samples: u32) -> Result<Self> {
+        let layouts = Layouts::new(gpu);
+        let [skin, shell, fin, resolve] = [SKIN, SHELL, FIN, RESOLVE].map(|main| gpu.shader(main, &SHARED));
+        let (skin, shell, fin, resolve) = (skin?, shell?, fin?, resolve?);
+        let target = |format, blend, write_mask| wgpu::ColorTargetState { format, blend, write_mask };
+        let opaque = target(COLOUR, None, wgpu::ColorWrites::ALL);
+        let hidden = target(COLOUR, None, wgpu::ColorWrites::empty());
+        let blended = target(COLOUR, Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), wgpu::ColorWrites::ALL);
+        let (view, tile) = (Some(&layouts.view), Some(&layouts.tile));
+        let skin_vertices = [Some(wgpu::VertexBufferLayout {
+            array_stride: size_of::<SkinVertex>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &SkinVertex::ATTRIBUTES,
+        })];
+        let skin_groups = [view, tile, Some(&layouts.material)];
+        let skin_pass = |target| Pass {
+            shader: &skin,
+            groups: &skin_groups,
+            vertices: &skin_vertices,
+            constants: &[],
+            target,
+            writes_depth: Some(true),
+        };
+        let shell_groups = [view, tile, Some(&layouts.geometry)];
+        let shells = |near: bool, with_fins: bool| {
+            let constants = [("NEAR_SIDE", f64::from(near)), ("WITH_FINS", f64::from(with_fins))];
+            let target = blended.clone();
+            pipeline(gpu, &Pass { shader: &shell, groups: &shell_groups, vertices: &[], constants: &constants, target, writes_depth: Some(near) })
+        };
+        let fin_groups = [view, tile, Some(&layouts.geometry), Some(&layouts.fin)];
+        let fins = Pass { shader: &fin, groups: &fin_groups, vertices: &[], constants: &[], target: blended.clone(), writes_depth: Some(false) };
+        let constants = [("SAMPLES", f64::from(samples))];
+        let resolve = Pass {
+            shader: &resolve,
+            groups: &[Some(&layouts.samples)],
+            vertices: &[],
+            constants: &constants,
+            target: target(RESOLVED, None, wgpu::ColorWrites::ALL),
+            writes_depth: None,
+        };
+        Ok(Self {
+            skin: pipeline(gpu, &skin_pass(opaque)),
+            skin_depth: pipeline(gpu, &skin_pass(hidden)),
+            far_shells: [shells(false, false), shells(false, true)],
+            near_shells: [shells(true, false), shells(true, true)],
+            fins: pipeline(gpu, &fins),
+            resolve: pipeline(gpu, &resolve),
+            layouts,
+        })
+    }
+}
+
+fn pipeline(gpu: &Gpu, pass: &Pass<'_>) -> wgpu::RenderPipeline {
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: pass.groups,
+        immediate_size: 0,
+    });
+    let compilation_options = wgpu::PipelineCompilationOptions { constants: pass.constants, ..Default::default() };
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: pass.shader,
+            entry_point: Some("vertex"),
+            compilation_options: compilation_options.clone(),
+            buffers: pass.vertices,
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: pass.writes_depth.map(|write| wgpu::DepthStencilState {
+            format: DEPTH,
+            depth_write_enabled: Some(write),
+            depth_compare: Some(wgpu::CompareFunction::LessEqual),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: pass.shader,
+            entry_point: Some("fragment"),
+            compilation_options,
+            targets: &[Some(pass.target.clone())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

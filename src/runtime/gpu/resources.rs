@@ -1,0 +1,198 @@
+//! What a picture needs on the device: tiles once, geometry per frame.
+
+use super::layout::{CoatVertex, FinInstance, SkinVertex, TileUniform};
+use super::pipelines::Layouts;
+use crate::data::coat::Tile;
+use crate::data::image::Image8;
+use crate::error::Result;
+use crate::gpu::{Gpu, TextureArray};
+use crate::runtime::scene::{Fur, Skin};
+
+/// Bytes of a vertex or index list.
+fn bytes_of<T>(list: &[T]) -> u64 {
+    size_of_val(list) as u64
+}
+
+fn bind(gpu: &Gpu, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
+    let entries: Vec<_> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+}
+
+fn view(array: &TextureArray) -> wgpu::BindingResource<'_> {
+    wgpu::BindingResource::TextureView(&array.view)
+}
+
+/// Trilinear and as anisotropic as WebGPU allows; `repeat` per axis.
+fn sampler(gpu: &Gpu, repeat: [bool; 2]) -> wgpu::Sampler {
+    let mode = |repeat| if repeat { wgpu::AddressMode::Repeat } else { wgpu::AddressMode::ClampToEdge };
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        address_mode_u: mode(repeat[0]),
+        address_mode_v: mode(repeat[1]),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        anisotropy_clamp: 16,
+        ..Default::default()
+    })
+}
+
+/// A tile's textures and tables.
+pub struct GpuTile {
+    /// Group 1.
+    pub group: wgpu::BindGroup,
+    /// Group 3 of fins.
+    pub fin: wgpu::BindGroup,
+    /// Layers, the skin counted.
+    pub layers: u32,
+    /// Texture memory.
+    pub bytes: u64,
+}
+
+impl GpuTile {
+    /// Uploads `tile`.
+    ///
+    /// # Errors
+    /// As [`Gpu::texture_array`].
+    pub fn new(gpu: &Gpu, layouts: &Layouts, tile: &Tile) -> Result<Self> {
+        let shells = &tile.shells;
+        let albedo = gpu.texture_array("shell albedo", &shells.albedo, true)?;
+        let medium = gpu.texture_array("shell medium", &shells.medium, false)?;
+        let ends = gpu.texture_array("shell ends", &shells.ends, false)?;
+        let single = |images: &[Image8]| images.iter().map(|image| vec![image.clone()]).collect::<Vec<_>>();
+        let fin_albedo = gpu.texture_array("fin albedo", &single(&tile.fin.albedo), true)?;
+        let fin_tangent = gpu.texture_array("fin tangent", &single(&tile.fin.tangent), false)?;
+        let uniform = gpu.buffer("tile", &[TileUniform::new(tile)], wgpu::BufferUsages::UNIFORM);
+        let slopes: Vec<[f32; 2]> = shells.slopes.iter().map(|slope| slope.to_array()).collect();
+        let slopes = gpu.buffer("slopes", &slopes, wgpu::BufferUsages::STORAGE);
+        let gains = gpu.buffer("gains", &shells.gains, wgpu::BufferUsages::STORAGE);
+        let hair_sampler = sampler(gpu, [true, true]);
+        let group = bind(
+            gpu,
+            &layouts.tile,
+            &[
+                uniform.as_entire_binding(),
+                slopes.as_entire_binding(),
+                gains.as_entire_binding(),
+                wgpu::BindingResource::Sampler(&hair_sampler),
+                view(&albedo),
+                view(&medium),
+                view(&ends),
+            ],
+        );
+        let fin_sampler = sampler(gpu, [true, false]);
+        let fin = bind(
+            gpu,
+            &layouts.fin,
+            &[wgpu::BindingResource::Sampler(&fin_sampler), view(&fin_albedo), view(&fin_tangent)],
+        );
+        let bytes = [&albedo, &medium, &ends, &fin_albedo, &fin_tangent].iter().map(|texture| texture.bytes).sum();
+        Ok(Self { group, fin, layers: shells.layers, bytes })
+    }
+}
+
+/// An opaque surface on the device.
+pub struct GpuSkin {
+    /// Group 2.
+    pub material: wgpu::BindGroup,
+    /// Vertex buffer.
+    pub vertices: wgpu::Buffer,
+    /// Index buffer, 32 bits.
+    pub indices: wgpu::Buffer,
+    /// How many indices.
+    pub index_count: u32,
+    /// Tile that shades it.
+    pub tile: Option<usize>,
+    /// Geometry and texture memory.
+    pub bytes: u64,
+}
+
+impl GpuSkin {
+    /// Uploads `skin`.
+    ///
+    /// # Errors
+    /// As [`Gpu::texture_array`].
+    pub fn new(gpu: &Gpu, layouts: &Layouts, skin: &Skin<'_>) -> Result<Self> {
+        let white = Image8 { width: 1, height: 1, channels: 4, pixels: vec![255; 4] };
+        let image = skin.texture.unwrap_or(&white);
+        let texture = gpu.texture_array("base colour", &mip_chain(image), true)?;
+        let sampler = sampler(gpu, [true, true]);
+        let material =
+            bind(gpu, &layouts.material, &[wgpu::BindingResource::Sampler(&sampler), view(&texture)]);
+        let vertices = SkinVertex::of(skin);
+        let bytes = texture.bytes + bytes_of(&vertices) + bytes_of(&skin.triangles);
+        Ok(Self {
+            material,
+            vertices: gpu.buffer("skin vertices", &vertices, wgpu::BufferUsages::VERTEX),
+            indices: gpu.buffer("skin indices", &skin.triangles, wgpu::BufferUsages::INDEX),
+            index_count: 3 * skin.triangles.len() as u32,
+            tile: skin.tile,
+            bytes,
+        })
+    }
+}
+
+/// Shells and fins on the device.
+pub struct GpuFur {
+    /// Group 2 of shells.
+    pub shells: wgpu::BindGroup,
+    /// Group 2 of fins.
+    pub fins: wgpu::BindGroup,
+    /// Vertices of one shell.
+    pub shell_vertices: u32,
+    /// Vertices of all fins.
+    pub fin_vertices: u32,
+    /// Tile it wears.
+    pub tile: usize,
+    /// Geometry memory.
+    pub bytes: u64,
+}
+
+impl GpuFur {
+    /// Uploads `fur`.
+    pub fn new(gpu: &Gpu, layouts: &Layouts, fur: &Fur<'_>) -> Self {
+        let vertices = CoatVertex::of(fur);
+        let fins: Vec<FinInstance> = fur.fins.iter().map(FinInstance::from).collect();
+        let bytes = bytes_of(&vertices) + bytes_of(fur.triangles) + bytes_of(&fins);
+        let vertices = gpu.buffer("coat vertices", &vertices, wgpu::BufferUsages::STORAGE);
+        let indices = gpu.buffer("coat indices", fur.triangles, wgpu::BufferUsages::STORAGE);
+        let edges = gpu.buffer("fins", &fins, wgpu::BufferUsages::STORAGE);
+        Self {
+            shells: bind(gpu, &layouts.geometry, &[vertices.as_entire_binding(), indices.as_entire_binding()]),
+            fins: bind(gpu, &layouts.geometry, &[vertices.as_entire_binding(), edges.as_entire_binding()]),
+            shell_vertices: 3 * fur.triangles.len() as u32,
+            fin_vertices: 6 * fins.len() as u32,
+            tile: fur.tile,
+            bytes,
+        }
+    }
+}
+
+/// Halves `image` down to one texel, averaging linear light, so that distant skin does not sparkle.
+fn mip_chain(image: &Image8) -> Vec<Vec<Image8>> {
+    use crate::data::image::{linear_from_srgb, srgb_from_linear, unorm8};
+    let table: Vec<f32> = (0..256).map(|byte| linear_from_srgb(byte as f32 / 255.0)).collect();
+    let mut chain = vec![vec![image.clone()]];
+    loop {
+        let last = &chain[chain.len() - 1][0];
+        if last.width == 1 && last.height == 1 {
+            return chain;
+        }
+        let mut half = Image8::new((last.width / 2).max(1), (last.height / 2).max(1), 4);
+        for y in 0..half.height {
+            for x in 0..half.width {
+                let at = |dx: u32, dy: u32| last.pixel((2 * x + dx).min(last.width - 1), (2 * y + dy).min(last.height - 1));
+                let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
+                let start = ((y * half.width + x) * 4) as usize;
+                for channel in 0..3 {
+                    let mean = four.iter().map(|p| table[p[channel] as usize]).sum::<f32>() / 4.0;
+                    half.pixels[start + channel] = unorm8(srgb_from_linear(mean));
+                }
+                half.pixels[start + 3] = (four.iter().map(|p| u32::from(p[3])).sum::<u32>() / 4) as u8;
+            }
+        }
+        chain.push(vec![half]);
+    }
+}

@@ -1,0 +1,113 @@
+//! What to draw and from where: posed, in metres, world axes, relative to one origin.
+
+use crate::data::coat::{FinEdge, Tile};
+use crate::data::image::Image8;
+use crate::math::{Mat4, Vec2, Vec3, Vec4};
+
+/// Lights that one picture can have.
+pub const MAX_LIGHTS: usize = 16;
+
+/// A posed asset with its coat.
+#[derive(Clone, Debug, Default)]
+pub struct Scene<'a> {
+    /// Opaque surfaces, furred or not.
+    pub skins: Vec<Skin<'a>>,
+    /// What the furred ones wear.
+    pub furs: Vec<Fur<'a>>,
+    /// Hair textures.
+    pub tiles: &'a [Tile],
+}
+
+/// An opaque surface. Vertex arrays have one entry per vertex; `coat_uv` and `coat_density` only where it is furred.
+#[derive(Clone, Debug, Default)]
+pub struct Skin<'a> {
+    /// Vertex positions, m.
+    pub positions_m: Vec<Vec3>,
+    /// Unit vertex normals.
+    pub normals: Vec<Vec3>,
+    /// Base colour factor times vertex colour, linear RGB.
+    pub colour: Vec<Vec3>,
+    /// Texture coordinates of `texture`.
+    pub uv: Vec<Vec2>,
+    /// Base colour texture, sRGB coded RGBA.
+    pub texture: Option<&'a Image8>,
+    /// Tile whose innermost transmittance shades this skin.
+    pub tile: Option<usize>,
+    /// Texture coordinates in that tile.
+    pub coat_uv: Vec<Vec2>,
+    /// Density factor of the coat.
+    pub coat_density: Vec<f32>,
+    /// Vertex indices.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Shells and fins. Vertex arrays have one entry per coat vertex.
+#[derive(Clone, Debug, Default)]
+pub struct Fur<'a> {
+    /// Index into [`Scene::tiles`].
+    pub tile: usize,
+    /// Positions on the skin, m.
+    pub positions_m: Vec<Vec3>,
+    /// Unit skin normals.
+    pub normals: Vec<Vec3>,
+    /// Root to the top of the stack, m.
+    pub offsets_m: Vec<Vec3>,
+    /// Texture coordinates in tiles.
+    pub uv: &'a [Vec2],
+    /// Colour factor (linear RGB) and density factor.
+    pub tint: &'a [Vec4],
+    /// Coat vertex indices; the outside is where the offsets point.
+    pub triangles: &'a [[u32; 3]],
+    /// Edges that may carry a fin.
+    pub fins: &'a [FinEdge],
+}
+
+/// Which of the three kinds of geometry to draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Show {
+    /// Opaque skin. Where it is left out it still hides what lies behind it.
+    pub skin: bool,
+    /// Shells.
+    pub shells: bool,
+    /// Fins.
+    pub fins: bool,
+}
+
+impl Default for Show {
+    fn default() -> Self {
+        Self { skin: true, shells: true, fins: true }
+    }
+}
+
+/// Camera and light.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// World to clip space: x right, y up, depth 0 (near) to 1 (far).
+    pub clip_from_world: Mat4,
+    /// Perspective: the eye, m, and 1. Orthographic: the unit vector towards the viewer, and 0.
+    pub eye: Vec4,
+    /// Pixels: width, height.
+    pub size: [u32; 2],
+    /// Samples along a pixel's edge; their square is what a pixel averages.
+    pub samples: u32,
+    /// (Unit vector towards the light, irradiance in linear RGB), at most [`MAX_LIGHTS`].
+    pub lights: Vec<(Vec3, Vec3)>,
+    /// Radiance that comes from everywhere, linear RGB.
+    pub ambient: Vec3,
+}
+
+/// A drawn picture: linear light, premultiplied by alpha.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Pixels: width, height.
+    pub size: [u32; 2],
+    /// Radiance and coverage, rows from the top.
+    pub pixels: Vec<[f32; 4]>,
+}
+
+impl Picture {
+    /// Mean alpha.
+    pub fn coverage(&self) -> f64 {
+        self.pixels.iter().map(|pixel| f64::from(pixel[3])).sum::<f64>() / self.pixels.len().max(1) as f64
+    }
+}

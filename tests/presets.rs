@@ -1,0 +1,104 @@
+//! The built-in presets: each reads, names itself, and describes hair that can exist.
+
+use furrier::error::Kind;
+use furrier::fur::groom::{Comb, Length};
+use furrier::preset::Preset;
+
+#[test]
+fn every_built_in_preset_reads_and_names_itself() {
+    let names: Vec<_> = Preset::names().collect();
+    assert!(names.is_sorted(), "listed out of order: {names:?}");
+    for name in ["mink", "fox", "rabbit", "bear", "short-cat", "sheep", "otter-wet", "plush", "grass"] {
+        assert!(names.contains(&name), "no preset {name}");
+    }
+    for name in names {
+        let preset = Preset::from_toml(Preset::source(name).unwrap()).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert_eq!(preset.name, name);
+        assert!(!preset.description.is_empty(), "{name} has no description");
+    }
+}
+
+#[test]
+fn every_preset_file_is_built_in() {
+    for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/presets")).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        assert_eq!(Preset::source(name), Some(std::fs::read_to_string(&path).unwrap().as_str()), "{name}");
+    }
+}
+
+#[test]
+fn hair_fits_on_its_skin_and_in_its_tile() {
+    for name in Preset::names() {
+        let preset = Preset::from_toml(Preset::source(name).unwrap()).unwrap();
+        let area_cm2 = |diameter_um: f32| std::f32::consts::PI * (diameter_um * 0.5e-4).powi(2);
+        let share = preset.guard.density_per_cm2 * area_cm2(preset.guard.diameter_um)
+            + preset.undercoat.density_per_cm2 * area_cm2(preset.undercoat.diameter_um);
+        assert!((0.001..0.25).contains(&share), "{name}: roots cover {share} of the skin");
+        for clump in [preset.guard.shape.clump, preset.undercoat.shape.clump] {
+            assert!(preset.shells.tile_mm > 4.0 * clump.spacing_mm, "{name}: fewer than 4 clumps along a tile");
+        }
+        for length_m in [preset.guard.length, preset.undercoat.length].map(|l| l.metres(preset.size_m)) {
+            let share = length_m / preset.size_m;
+            assert!((0.002..0.5).contains(&share), "{name}: hair is {share} of the animal's size");
+        }
+    }
+}
+
+fn set(preset: &str, settings: &[&str]) -> furrier::Result<Preset> {
+    Preset::load(preset)?.with_settings(&settings.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>())
+}
+
+#[test]
+fn settings_change_what_they_name_and_nothing_else() {
+    let mut expected = Preset::load("fox").unwrap();
+    assert_eq!(set("fox", &[]).unwrap(), expected);
+    expected.guard.length = Length::Relative(0.02);
+    expected.groom.comb = Comb::Gravity;
+    expected.undercoat.density_per_cm2 = 12.0;
+    expected.colour.tint = [0.1, 0.2, 0.3];
+    let settings = [
+        "guard.length.relative=0.02",
+        "groom.comb=gravity",
+        "undercoat.density_per_cm2 = 12",
+        "colour.tint=[0.1, 0.2, 0.3]",
+    ];
+    assert_eq!(set("fox", &settings).unwrap(), expected);
+}
+
+#[test]
+fn a_setting_that_cannot_be_is_refused_by_name() {
+    for setting in [
+        "guard.diameter=1",
+        "guard",
+        "guard.diameter_um=thick",
+        "guard.diameter_um=-1",
+        "guard.diameter_um=nan",
+        "name.x=1",
+        "=1",
+        "groom.comb=sideways",
+        "guard.length.mm=1\nsize_m = 2",
+    ] {
+        let error = set("fox", &[setting]).expect_err(setting);
+        assert_eq!(error.kind, Kind::Usage, "{setting}");
+        assert!(error.field.is_some() && error.found.is_some(), "{setting}: {error}");
+    }
+}
+
+#[test]
+fn a_preset_file_is_found_named_and_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.toml");
+    std::fs::write(&path, "size_m = 1.0\nmaps = { length = \"length.png\" }").unwrap();
+    let preset = Preset::load(path.to_str().unwrap()).unwrap();
+    assert_eq!(preset.name, "mine");
+    assert_eq!(preset.maps.length, Some(folder.path().join("length.png")));
+
+    std::fs::write(&path, "size_m = 1.0\n[guard]\nlenght = { mm = 3 }").unwrap();
+    let error = Preset::load(path.to_str().unwrap()).unwrap_err();
+    assert_eq!(error.file.as_deref(), Some(path.as_path()));
+    assert!(error.found.unwrap().contains("lenght"));
+
+    let error = Preset::load("foxx").unwrap_err();
+    assert!(error.expected.unwrap().contains("fox, grass"));
+}
