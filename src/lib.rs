@@ -2,6 +2,7 @@
 //!
 //! The folders are the pipeline, read top to bottom in `docs/architecture.md`; a file imports only from lower floors.
 
+pub mod asset;
 pub mod cli;
 pub mod coat;
 pub mod data;

@@ -9,5 +9,6 @@ mod coats;
 mod common;
 mod docs;
 mod harness;
+mod hostile;
 mod presets;
 mod runtime;

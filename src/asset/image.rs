@@ -1,0 +1,104 @@
+//! Images of a document: found, their size checked in the header, and only then decoded.
+
+use super::document::Document;
+use super::uri;
+use crate::data::image::Image8;
+use crate::error::{Error, Result};
+use image::{ImageFormat, ImageReader, Limits};
+use std::io::Cursor;
+
+/// Longest side that is decoded, pixels.
+pub const MAX_SIDE: u32 = 16_384;
+/// Most pixels that are decoded (256 MiB as RGBA).
+pub const MAX_PIXELS: u64 = 1 << 26;
+
+/// What there is to know of an image before decoding it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Found {
+    /// Can be decoded.
+    Usable { width: u32, height: u32 },
+    /// The file it names is not there.
+    Missing,
+    /// Neither PNG, JPEG nor WebP.
+    Foreign,
+}
+
+impl Document {
+    /// The encoded bytes of image `index`; none where the file it names is not there.
+    ///
+    /// # Errors
+    /// Names images that point nowhere, or outside the input's folder.
+    pub fn image_bytes(&self, index: usize) -> Result<Option<Vec<u8>>> {
+        let image = self.root().entry("images", index)?;
+        if let Some(view) = image.get("bufferView") {
+            return Ok(Some(self.view(view.size()?)?.to_vec()));
+        }
+        let Some(at) = image.get("uri") else { return Ok(None) };
+        match uri::resolve(at.text()?, self.folder.as_deref(), &at.path)? {
+            uri::Target::Data { base64, .. } => uri::decode_base64(base64, &at.path).map(Some),
+            uri::Target::File(path) if path.exists() => uri::read_file(&path).map(Some),
+            uri::Target::File(_) => Ok(None),
+        }
+    }
+
+    /// Reads the header of image `index`.
+    ///
+    /// # Errors
+    /// When the header claims more pixels than are ever decoded.
+    pub fn find_image(&self, index: usize) -> Result<Found> {
+        let Some(bytes) = self.image_bytes(index)? else { return Ok(Found::Missing) };
+        let Some(format) = format(&bytes) else { return Ok(Found::Foreign) };
+        let size = ImageReader::with_format(Cursor::new(&bytes), format).into_dimensions();
+        let (width, height) = size.map_err(|error| self.broken_image(index, &error))?;
+        if width.max(height) > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_PIXELS {
+            return Err(Error::input("an image is too large")
+                .with_field(format!("images[{index}]"))
+                .with_found(format!("{width} × {height} pixels in its header"))
+                .with_expected(format!("at most {MAX_SIDE} a side and {MAX_PIXELS} in all"))
+                .with_hint("scale the image down"));
+        }
+        Ok(Found::Usable { width, height })
+    }
+
+    /// Image `index` as RGBA; none where it is missing or of a kind that is not decoded.
+    ///
+    /// # Errors
+    /// When it is broken or too large.
+    pub fn decode_image(&self, index: usize) -> Result<Option<Image8>> {
+        let Found::Usable { .. } = self.find_image(index)? else { return Ok(None) };
+        let Some((bytes, format)) = self.image_bytes(index)?.and_then(|bytes| format(&bytes).map(|f| (bytes, f)))
+        else {
+            return Ok(None);
+        };
+        let mut reader = ImageReader::with_format(Cursor::new(&bytes), format);
+        let mut limits = Limits::default();
+        limits.max_image_width = Some(MAX_SIDE);
+        limits.max_image_height = Some(MAX_SIDE);
+        limits.max_alloc = Some(MAX_PIXELS * 8);
+        reader.limits(limits);
+        let image = reader.decode().map_err(|error| self.broken_image(index, &error))?.into_rgba8();
+        Ok(Some(Image8 { width: image.width(), height: image.height(), channels: 4, pixels: image.into_raw() }))
+    }
+
+    fn broken_image(&self, index: usize, error: &image::ImageError) -> Error {
+        Error::input("an image cannot be decoded")
+            .with_field(format!("images[{index}]"))
+            .with_found(error)
+            .with_expected("a whole PNG, JPEG or WebP")
+            .with_hint("save the image again")
+    }
+}
+
+fn format(bytes: &[u8]) -> Option<ImageFormat> {
+    let format = image::guess_format(bytes).ok()?;
+    matches!(format, ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP).then_some(format)
+}
+
+/// Media type of encoded image bytes, as glTF names it.
+pub fn media_type(bytes: &[u8]) -> Option<&'static str> {
+    Some(match format(bytes)? {
+        ImageFormat::Png => "image/png",
+        ImageFormat::Jpeg => "image/jpeg",
+        _ => "image/webp",
+    })
+}

@@ -1,0 +1,239 @@
+//! What fur can grow on: one triangle primitive in its place in the world.
+
+use super::document::Document;
+use super::material::BaseColour;
+use super::primitive::Primitive;
+use super::scene::Scene;
+use crate::data::mesh::Mesh;
+use crate::error::{Error, Result};
+use crate::math::{DAffine3, DMat3, DMat4, DVec3, Vec3};
+
+/// A triangle primitive of the default scene. Mesh vertices are the stored vertices, in their order.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// glTF mesh.
+    pub mesh: usize,
+    /// Primitive of that mesh.
+    pub primitive: usize,
+    /// Nodes that show the mesh; the rest pose is the first one's.
+    pub nodes: Vec<usize>,
+    /// Skin of the first node.
+    pub skin: Option<usize>,
+    /// glTF material.
+    pub material: Option<usize>,
+    /// Its name; `material_3` for nameless ones, `default` where there is none.
+    pub material_name: String,
+    /// What hair takes its colour from by default.
+    pub base_colour: BaseColour,
+    /// Vertex data in the primitive's own space.
+    pub stored: Primitive,
+    /// Middle of the whole scene, file units: the origin of every part's mesh.
+    pub centre_units: DVec3,
+    /// Rest pose: one transform for all vertices, or, under a skin, one per vertex.
+    world_from_local: Vec<DAffine3>,
+}
+
+impl Part {
+    /// Places a primitive in the rest pose of its first node; `world` has one matrix per node.
+    ///
+    /// # Errors
+    /// Names the node or joint whose matrix flattens the mesh.
+    pub(super) fn place(mut self, scene: &Scene, world: &[DMat4]) -> Result<Self> {
+        self.world_from_local = self.placement(scene, world, self.nodes[0], &self.stored)?;
+        Ok(self)
+    }
+
+    /// Per vertex, or once for all: the affine map from the primitive's space to the world.
+    fn placement(&self, scene: &Scene, world: &[DMat4], node: usize, stored: &Primitive) -> Result<Vec<DAffine3>> {
+        let (Some(skin), Some(influences)) = (self.skin, &stored.influences) else {
+            scene.check_invertible(node, &world[node])?;
+            return Ok(vec![DAffine3::from_mat4(world[node])]);
+        };
+        let joints = scene.joint_matrices(skin, world);
+        let mut maps = Vec::with_capacity(influences.len());
+        for (v, entry) in influences.iter().enumerate() {
+            let blend = entry
+                .iter()
+                .filter(|&&(_, weight)| weight > 0.0)
+                .fold(DMat4::ZERO, |sum, &(joint, weight)| sum + joints[usize::from(joint)] * f64::from(weight));
+            let determinant = DMat3::from_mat4(blend).determinant();
+            if !determinant.is_finite() || determinant == 0.0 {
+                return Err(Error::input("the rest pose of a skin flattens a vertex, so hair has no way up")
+                    .with_field(format!(
+                        "skins[{skin}] (vertex {v} of meshes[{}].primitives[{}])",
+                        self.mesh, self.primitive
+                    ))
+                    .with_found(format!("determinant {determinant:e}"))
+                    .with_expected("joints with a scale other than zero")
+                    .with_hint("bake the rest pose with every joint's scale at 1"));
+            }
+            maps.push(DAffine3::from_mat4(blend));
+        }
+        Ok(maps)
+    }
+
+    fn map(&self, vertex: usize) -> &DAffine3 {
+        &self.world_from_local[if self.world_from_local.len() == 1 { 0 } else { vertex }]
+    }
+
+    /// Whether the rest pose mirrors the primitive (a negative scale), so that windings turn round.
+    pub fn mirrored(&self) -> bool {
+        let signs: f64 = self.world_from_local.iter().map(|map| map.matrix3.determinant().signum()).sum();
+        signs < 0.0
+    }
+
+    /// Stored vertices.
+    pub fn vertices(&self) -> usize {
+        self.stored.positions.len()
+    }
+
+    /// World position of a vertex in the rest pose, file units.
+    pub fn world_units(&self, vertex: usize) -> DVec3 {
+        self.map(vertex).transform_point3(self.stored.positions[vertex].as_dvec3())
+    }
+
+    /// The rest pose as a mesh in metres; a file unit is `metres_per_unit` long.
+    ///
+    /// # Errors
+    /// When a coordinate leaves what f32 can hold.
+    pub fn mesh(&self, metres_per_unit: f64) -> Result<Mesh> {
+        let stored = &self.stored;
+        let vertices = 0..self.vertices();
+        let direction = |v: usize, local: Vec3| (self.map(v).matrix3 * local.as_dvec3()).normalize_or_zero().as_vec3();
+        let mut triangles = stored.triangles.clone();
+        if self.mirrored() {
+            triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        }
+        Mesh {
+            origin_m: self.centre_units * metres_per_unit,
+            positions_m: vertices
+                .clone()
+                .map(|v| ((self.world_units(v) - self.centre_units) * metres_per_unit).as_vec3())
+                .collect(),
+            normals: vertices.map(|v| world_normal(&self.map(v).matrix3, stored.normals[v])).collect(),
+            triangles,
+            position_class: stored.position_class.clone(),
+            uv_sets: stored.uv_sets.clone(),
+            colour: stored.colour.clone(),
+            fur_length: stored.fur_length.clone(),
+            fur_direction: stored
+                .fur_direction
+                .as_ref()
+                .map(|list| list.iter().enumerate().map(|(v, &d)| direction(v, d)).collect()),
+        }
+        .checked()
+    }
+
+    /// A world offset at `vertex`, m, as an offset in the primitive's own space and units.
+    pub fn local_offset(&self, vertex: usize, offset_m: Vec3, metres_per_unit: f64) -> Vec3 {
+        (self.local_from_world(vertex) * (offset_m.as_dvec3() / metres_per_unit)).as_vec3()
+    }
+
+    /// The linear map that takes world directions to the primitive's own space at `vertex`, rest pose, file units.
+    pub fn local_from_world(&self, vertex: usize) -> DMat3 {
+        self.map(vertex).matrix3.inverse()
+    }
+
+    /// The linear map of the rest pose at `vertex`, file units.
+    pub fn world_from_local(&self, vertex: usize) -> DMat3 {
+        self.map(vertex).matrix3
+    }
+}
+
+/// A normal under a linear map: by the inverse transpose, which also keeps it outside under a mirror.
+pub(super) fn world_normal(map: &DMat3, normal: Vec3) -> Vec3 {
+    let turned = map.inverse().transpose() * normal.as_dvec3();
+    turned.try_normalize().unwrap_or(normal.as_dvec3()).as_vec3()
+}
+
+/// Every part of the default scene, centred on the scene's middle, and the scene's bounding diagonal in file units.
+///
+/// # Errors
+/// Names what cannot be used; also when there is no triangle at all.
+pub fn collect(document: &Document, scene: &Scene, warnings: &mut Vec<String>) -> Result<(Vec<Part>, f64)> {
+    let root = document.root();
+    let nodes = root.list("nodes")?;
+    let world = scene.world(&scene.local);
+    let mut instances: Vec<Vec<usize>> = vec![Vec::new(); document.count("meshes")];
+    for &node in &scene.shown {
+        if let Some(mesh) = nodes[node].reference("mesh", "meshes", instances.len())? {
+            instances[mesh].push(node);
+        }
+    }
+    let mut parts = Vec::new();
+    let mut passed_over = 0;
+    let mut vertices = 0;
+    for (mesh, nodes_of) in instances.into_iter().enumerate().filter(|(_, nodes)| !nodes.is_empty()) {
+        let at = root.entry("meshes", mesh)?;
+        if super::coat::is_fallback(&at) {
+            continue;
+        }
+        for (primitive, at) in at.list("primitives")?.iter().enumerate() {
+            match at.size_or("mode", 4)? {
+                4..=6 => {}
+                0..=3 => {
+                    passed_over += 1;
+                    continue;
+                }
+                _ => return Err(at.need("mode")?.fault("0 to 6")),
+            }
+            let skin = nodes[nodes_of[0]].reference("skin", "skins", scene.skins.len())?;
+            let stored = Primitive::read(document, at, skin.map(|s| scene.skins[s].joints.len()), warnings)?;
+            if stored.triangles.is_empty() {
+                warnings.push(format!("{}: no triangles; passed over", at.path));
+                continue;
+            }
+            vertices += stored.positions.len();
+            if vertices > MAX_VERTICES {
+                return Err(at
+                    .fault(&format!("at most {MAX_VERTICES} vertices in all"))
+                    .with_hint("decimate the mesh"));
+            }
+            let material = at.reference("material", "materials", document.count("materials"))?;
+            parts.push(
+                Part {
+                    mesh,
+                    primitive,
+                    nodes: nodes_of.clone(),
+                    skin,
+                    material,
+                    material_name: material_name(document, material)?,
+                    base_colour: material
+                        .map_or(Ok(BaseColour::default()), |m| BaseColour::of(document, m, warnings))?,
+                    stored,
+                    centre_units: DVec3::ZERO,
+                    world_from_local: Vec::new(),
+                }
+                .place(scene, &world)?,
+            );
+        }
+    }
+    if passed_over > 0 {
+        warnings.push(format!("{passed_over} primitives of points or lines passed over"));
+    }
+    if parts.is_empty() {
+        return Err(Error::input("there is nothing that fur could grow on")
+            .with_field("meshes")
+            .with_found("no triangle in the default scene")
+            .with_expected("at least one primitive of triangles")
+            .with_hint("export the mesh with faces, in the scene that is shown"));
+    }
+    let points = || parts.iter().flat_map(|part| (0..part.vertices()).map(|v| part.world_units(v)));
+    let low = points().fold(DVec3::INFINITY, DVec3::min);
+    let high = points().fold(DVec3::NEG_INFINITY, DVec3::max);
+    if !(low.is_finite() && high.is_finite()) {
+        return Err(Error::input("the scene's size is not a finite number").with_field("nodes").with_found(high - low));
+    }
+    parts.iter_mut().for_each(|part| part.centre_units = 0.5 * (low + high));
+    Ok((parts, (high - low).length()))
+}
+
+/// Most vertices of all parts together.
+const MAX_VERTICES: usize = 1 << 24;
+
+fn material_name(document: &Document, material: Option<usize>) -> Result<String> {
+    let Some(index) = material else { return Ok("default".into()) };
+    let at = document.root().entry("materials", index)?;
+    let name = at.get("name").and_then(|name| name.value.as_str()).filter(|name| !name.is_empty());
+    Ok(name.map_or_else(|| format!("material_{index}"), str::to_owned))
+}

@@ -1,0 +1,233 @@
+//! One triangle primitive as stored, in its own space: read, checked, repaired where that harms nothing.
+
+use super::document::Document;
+use super::json::At;
+use crate::data::mesh::position_classes;
+use crate::error::{Error, Result};
+use crate::math::{DVec3, Vec2, Vec3, Vec4};
+
+/// Joint influences of a vertex: joint and weight; weights sum to 1.
+pub type Influences = [(u16, f32); 8];
+
+/// What a morph target adds.
+#[derive(Clone, Debug, Default)]
+pub struct Morph {
+    /// Position changes, one per vertex, or none.
+    pub positions: Vec<Vec3>,
+    /// Normal changes, one per vertex, or none.
+    pub normals: Vec<Vec3>,
+}
+
+/// Vertex data in the primitive's own space and units, one entry per stored vertex, and its triangles.
+#[derive(Clone, Debug, Default)]
+pub struct Primitive {
+    /// Positions.
+    pub positions: Vec<Vec3>,
+    /// Unit normals: stored ones, repaired where they were missing or not unit.
+    pub normals: Vec<Vec3>,
+    /// `TEXCOORD_n` in order.
+    pub uv_sets: Vec<Vec<Vec2>>,
+    /// `COLOR_0`, alpha 1 where it has none.
+    pub colour: Option<Vec<Vec4>>,
+    /// `_FUR_LENGTH`.
+    pub fur_length: Option<Vec<f32>>,
+    /// `_FUR_DIRECTION`.
+    pub fur_direction: Option<Vec<Vec3>>,
+    /// Joints and weights of skinned primitives.
+    pub influences: Option<Vec<Influences>>,
+    /// Morph targets.
+    pub morphs: Vec<Morph>,
+    /// Triangles that have an area, counter-clockwise from where the normals point.
+    pub triangles: Vec<[u32; 3]>,
+    /// Smallest index of a vertex at the same place, one per vertex.
+    pub position_class: Vec<u32>,
+}
+
+impl Primitive {
+    /// Reads a primitive of mode 4, 5 or 6; `joints` is the length of its skin, if it has one.
+    ///
+    /// # Errors
+    /// Names the accessor and the element that cannot be used.
+    pub fn read(document: &Document, at: &At<'_>, joints: Option<usize>, warnings: &mut Vec<String>) -> Result<Self> {
+        let attributes = at.need("attributes")?;
+        let positions_at = attributes.need("POSITION")?;
+        let positions = vectors(document, &positions_at)?;
+        if let Some(i) = positions.iter().position(|p| !p.is_finite()) {
+            return Err(Error::input("a vertex position is not a finite number")
+                .with_field(format!("{} (vertex {i})", positions_at.path))
+                .with_found(positions[i])
+                .with_expected("finite numbers")
+                .with_hint("delete or move the vertex in the modelling program"));
+        }
+        let mut primitive = Self { positions, ..Self::default() };
+        primitive.triangles = triangles(document, at, primitive.positions.len(), warnings)?;
+        super::repair::drop_degenerate(&mut primitive, &at.path, warnings);
+        primitive.position_class = classes(&primitive.positions, &primitive.triangles);
+        primitive.read_attributes(document, &attributes, warnings)?;
+        if let Some(normals) = attributes.get("NORMAL") {
+            primitive.normals = vectors(document, &normals)?;
+        }
+        super::repair::normals(&mut primitive, &at.path, warnings);
+        super::repair::report_topology(&primitive, &at.path, warnings);
+        if let Some(joints) = joints {
+            primitive.influences = influences(document, &attributes, primitive.positions.len(), joints, warnings)?;
+        }
+        for target in at.list("targets")? {
+            let read = |key: &str| target.get(key).map_or(Ok(Vec::new()), |at| vectors(document, &at));
+            let morph = Morph { positions: read("POSITION")?, normals: read("NORMAL")? };
+            if let Some(i) = morph.positions.iter().chain(&morph.normals).position(|p| !p.is_finite()) {
+                return Err(target.fault(&format!("finite numbers (element {i} is not)")));
+            }
+            primitive.morphs.push(morph);
+        }
+        Ok(primitive)
+    }
+
+    fn read_attributes(&mut self, document: &Document, attributes: &At<'_>, warnings: &mut Vec<String>) -> Result<()> {
+        while let Some(at) = attributes.get(&format!("TEXCOORD_{}", self.uv_sets.len())) {
+            let mut set: Vec<Vec2> = document.floats(at.size()?, 2)?.chunks_exact(2).map(Vec2::from_slice).collect();
+            super::repair::zero_unless_finite(&mut set, |uv| uv.is_finite(), &at.path, warnings);
+            if set.iter().all(|uv| *uv == Vec2::ZERO) {
+                warnings.push(format!("{}: every texture coordinate is (0, 0)", at.path));
+            }
+            self.uv_sets.push(set);
+        }
+        if let Some(at) = attributes.get("COLOR_0") {
+            let index = at.size()?;
+            let components = if super::accessor::Layout::of(document, index)?.components == 3 { 3 } else { 4 };
+            let floats = document.floats(index, components)?;
+            let mut colours: Vec<Vec4> = floats
+                .chunks_exact(components)
+                .map(|c| Vec4::new(c[0], c[1], c[2], c.get(3).copied().unwrap_or(1.0)))
+                .collect();
+            super::repair::zero_unless_finite(&mut colours, |c| c.is_finite(), &at.path, warnings);
+            self.colour = Some(colours);
+        }
+        if let Some(at) = attributes.get("_FUR_LENGTH") {
+            let mut lengths = document.floats(at.size()?, 1)?;
+            super::repair::zero_unless_finite(&mut lengths, |l| l.is_finite(), &at.path, warnings);
+            self.fur_length = Some(lengths.into_iter().map(|l| l.max(0.0)).collect());
+        }
+        if let Some(at) = attributes.get("_FUR_DIRECTION") {
+            let mut directions = vectors(document, &at)?;
+            super::repair::zero_unless_finite(&mut directions, |d| d.is_finite(), &at.path, warnings);
+            self.fur_direction = Some(directions);
+        }
+        Ok(())
+    }
+}
+
+fn vectors(document: &Document, at: &At<'_>) -> Result<Vec<Vec3>> {
+    Ok(document.floats(at.size()?, 3)?.chunks_exact(3).map(Vec3::from_slice).collect())
+}
+
+/// Corner indices of modes 4 (triangles), 5 (strip) and 6 (fan).
+fn triangles(document: &Document, at: &At<'_>, vertices: usize, warnings: &mut Vec<String>) -> Result<Vec<[u32; 3]>> {
+    let indices = match at.get("indices") {
+        Some(indices_at) => {
+            let indices = document.integers(indices_at.size()?, 1)?;
+            if let Some(i) = indices.iter().position(|&v| v as usize >= vertices) {
+                return Err(Error::input("an index points past the last vertex")
+                    .with_field(format!("{} (index {i})", indices_at.path))
+                    .with_found(indices[i])
+                    .with_expected(format!("indices below {vertices}"))
+                    .with_hint("the file was written by a faulty exporter; export it again"));
+            }
+            indices
+        }
+        None => (0..vertices as u32).collect(),
+    };
+    let windows = indices.windows(3).enumerate();
+    Ok(match at.size_or("mode", 4)? {
+        5 => windows.map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] }).collect(),
+        6 => windows.map(|(_, w)| [w[1], w[2], indices[0]]).collect(),
+        _ => {
+            let (triangles, rest) = indices.as_chunks::<3>();
+            if !rest.is_empty() {
+                warnings.push(format!(
+                    "{}: {} indices beyond the last whole triangle passed over",
+                    at.path,
+                    rest.len()
+                ));
+            }
+            triangles.to_vec()
+        }
+    })
+}
+
+/// Welds vertices closer than 2·10⁻⁶ of the size, but never the two ends of an edge.
+fn classes(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u32> {
+    let points = |f: fn(DVec3, DVec3) -> DVec3, start| positions.iter().fold(start, |a, p| f(a, p.as_dvec3()));
+    let (low, high) = (points(DVec3::min, DVec3::INFINITY), points(DVec3::max, DVec3::NEG_INFINITY));
+    let diagonal = (high - low).length();
+    if diagonal.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
+        return position_classes(positions, 0.0);
+    }
+    // Scaled to a unit diagonal, so that the file's own scale does not matter.
+    let scaled: Vec<Vec3> = positions.iter().map(|p| ((p.as_dvec3() - low) / diagonal).as_vec3()).collect();
+    let shortest = triangles
+        .iter()
+        .flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
+        .map(|(a, b)| scaled[a as usize].distance(scaled[b as usize]))
+        .filter(|&length| length > 1e-7)
+        .fold(f32::INFINITY, f32::min);
+    position_classes(&scaled, (0.45 * shortest).min(2e-6))
+}
+
+/// `JOINTS_n` and `WEIGHTS_n` (n = 0, 1), weights scaled to sum to 1.
+fn influences(
+    document: &Document,
+    attributes: &At<'_>,
+    vertices: usize,
+    skin_joints: usize,
+    warnings: &mut Vec<String>,
+) -> Result<Option<Vec<Influences>>> {
+    let mut list = vec![Influences::default(); vertices];
+    let mut found = false;
+    for set in 0..2 {
+        let (Some(joints), Some(weights)) =
+            (attributes.get(&format!("JOINTS_{set}")), attributes.get(&format!("WEIGHTS_{set}")))
+        else {
+            break;
+        };
+        found = true;
+        let (joint_values, weight_values) =
+            (document.integers(joints.size()?, 4)?, document.floats(weights.size()?, 4)?);
+        for (v, (j, w)) in joint_values.chunks_exact(4).zip(weight_values.chunks_exact(4)).enumerate() {
+            for k in 0..4 {
+                if j[k] as usize >= skin_joints {
+                    return Err(Error::input("a vertex hangs on a joint that its skin does not have")
+                        .with_field(format!("{} (vertex {v})", joints.path))
+                        .with_found(j[k])
+                        .with_expected(format!("joints 0 to {}", skin_joints - 1))
+                        .with_hint("bind the mesh to its skeleton again and export it"));
+                }
+                list[v][set * 4 + k] = (j[k] as u16, if w[k].is_finite() { w[k].max(0.0) } else { 0.0 });
+            }
+        }
+    }
+    if !found {
+        return Ok(None);
+    }
+    let (mut uneven, mut loose) = (0, 0);
+    for entry in &mut list {
+        let sum: f32 = entry.iter().map(|&(_, w)| w).sum();
+        if sum > 0.0 && sum.is_finite() {
+            uneven += usize::from((sum - 1.0).abs() > 0.01);
+            entry.iter_mut().for_each(|(_, w)| *w /= sum);
+        } else {
+            loose += 1;
+            entry.iter_mut().for_each(|(_, w)| *w = 0.0);
+            entry[0].1 = 1.0;
+        }
+    }
+    if uneven > 0 {
+        warnings
+            .push(format!("{}: weights of {uneven} vertices do not sum to 1; scaled for the bake", attributes.path));
+    }
+    if loose > 0 {
+        warnings
+            .push(format!("{}: {loose} vertices have no weights; taken to hang on their first joint", attributes.path));
+    }
+    Ok(Some(list))
+}

@@ -1,0 +1,162 @@
+//! The node hierarchy and skins, in f64: a part may lie 10⁶ units from the origin.
+
+use super::document::Document;
+use super::json::At;
+use crate::error::{Error, Result};
+use crate::math::{DMat4, DQuat, DVec3};
+
+/// A node's own transform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Local {
+    /// A matrix; cannot be animated.
+    Matrix(DMat4),
+    /// Scale, then rotation, then translation.
+    Trs { translation: DVec3, rotation: DQuat, scale: DVec3 },
+}
+
+impl Local {
+    fn of(node: &At<'_>) -> Result<Self> {
+        if let Some(matrix) = node.get("matrix") {
+            return Ok(Self::Matrix(DMat4::from_cols_array(&matrix.numbers()?)));
+        }
+        let triple =
+            |key: &str, default: DVec3| node.get(key).map_or(Ok(default), |at| at.numbers().map(DVec3::from_array));
+        let rotation = match node.get("rotation") {
+            Some(at) => unit(DQuat::from_array(at.numbers()?)).ok_or_else(|| at.fault("a unit quaternion"))?,
+            None => DQuat::IDENTITY,
+        };
+        Ok(Self::Trs {
+            translation: triple("translation", DVec3::ZERO)?,
+            rotation,
+            scale: triple("scale", DVec3::ONE)?,
+        })
+    }
+
+    /// As a matrix.
+    pub fn matrix(&self) -> DMat4 {
+        match *self {
+            Self::Matrix(matrix) => matrix,
+            Self::Trs { translation, rotation, scale } => {
+                DMat4::from_scale_rotation_translation(scale, rotation, translation)
+            }
+        }
+    }
+}
+
+/// A quaternion scaled to unit length, if it can be.
+pub(super) fn unit(q: DQuat) -> Option<DQuat> {
+    let length = q.length();
+    (length.is_finite() && length > 1e-9).then(|| q / length)
+}
+
+/// Nodes in an order in which parents come first.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Per node.
+    pub local: Vec<Local>,
+    /// Per node.
+    pub parent: Vec<Option<usize>>,
+    /// Every node, parents before children.
+    pub order: Vec<usize>,
+    /// Nodes of the default scene.
+    pub shown: Vec<usize>,
+    /// Per skin: joints and their inverse bind matrices.
+    pub skins: Vec<Skin>,
+}
+
+/// Joints of a skin.
+#[derive(Clone, Debug)]
+pub struct Skin {
+    /// Node and inverse bind matrix of each joint.
+    pub joints: Vec<(usize, DMat4)>,
+}
+
+impl Scene {
+    /// Reads the hierarchy of a validated document.
+    ///
+    /// # Errors
+    /// Names a transform that is not finite numbers.
+    pub fn of(document: &Document) -> Result<Self> {
+        let root = document.root();
+        let nodes = root.list("nodes")?;
+        let mut scene = Self { parent: vec![None; nodes.len()], ..Self::default() };
+        let mut children = Vec::with_capacity(nodes.len());
+        for (i, node) in nodes.iter().enumerate() {
+            scene.local.push(Local::of(node)?);
+            let list: Vec<usize> = node.list("children")?.iter().map(At::size).collect::<Result<_>>()?;
+            for &child in &list {
+                *scene.parent.get_mut(child).ok_or_else(|| node.fault("children that exist"))? = Some(i);
+            }
+            children.push(list);
+        }
+        let spread = |roots: Vec<usize>| {
+            let mut reached = roots;
+            let mut next = 0;
+            while let Some(&i) = reached.get(next) {
+                reached.extend(&children[i]);
+                next += 1;
+            }
+            reached
+        };
+        let roots: Vec<usize> = (0..nodes.len()).filter(|&i| scene.parent[i].is_none()).collect();
+        scene.order = spread(roots.clone());
+        let scenes = root.list("scenes")?;
+        scene.shown = match scenes.get(root.size_or("scene", 0)?) {
+            Some(shown) => spread(shown.list("nodes")?.iter().map(At::size).collect::<Result<_>>()?),
+            None => scene.order.clone(),
+        };
+        scene.shown.sort_unstable();
+        scene.shown.dedup();
+        for skin in root.list("skins")? {
+            scene.skins.push(read_skin(document, &skin)?);
+        }
+        Ok(scene)
+    }
+
+    /// World matrix of every node, given every node's own.
+    pub fn world(&self, local: &[Local]) -> Vec<DMat4> {
+        let mut world = vec![DMat4::IDENTITY; local.len()];
+        for &i in &self.order {
+            let own = local[i].matrix();
+            world[i] = self.parent[i].map_or(own, |p| world[p] * own);
+        }
+        world
+    }
+
+    /// Matrices that take vertices of a mesh under skin `skin` to the world, per joint.
+    pub fn joint_matrices(&self, skin: usize, world: &[DMat4]) -> Vec<DMat4> {
+        self.skins[skin].joints.iter().map(|&(node, inverse_bind)| world[node] * inverse_bind).collect()
+    }
+
+    /// The world matrix of `node`, which must be invertible.
+    ///
+    /// # Errors
+    /// Names the node whose matrix flattens what hangs on it.
+    pub fn check_invertible(&self, node: usize, world: &DMat4) -> Result<()> {
+        let linear = crate::math::DMat3::from_mat4(*world);
+        let size = linear.x_axis.length().max(linear.y_axis.length()).max(linear.z_axis.length());
+        let determinant = linear.determinant();
+        if determinant.is_finite() && determinant.abs() > 1e-12 * size.powi(3) && size > 0.0 {
+            return Ok(());
+        }
+        Err(Error::input("a node's world matrix is singular, so its mesh is flat and hair has no way up")
+            .with_field(format!("nodes[{node}]"))
+            .with_found(format!("determinant {determinant:e}"))
+            .with_expected("a scale other than zero along every axis")
+            .with_hint("apply the scale in the modelling program before exporting"))
+    }
+}
+
+fn read_skin(document: &Document, skin: &At<'_>) -> Result<Skin> {
+    let nodes: Vec<usize> = skin.list("joints")?.iter().map(At::size).collect::<Result<_>>()?;
+    let matrices = match skin.get("inverseBindMatrices") {
+        Some(at) => document.floats(at.size()?, 16)?,
+        None => DMat4::IDENTITY.to_cols_array().map(|m| m as f32).repeat(nodes.len()),
+    };
+    let joints = nodes.into_iter().zip(matrices.chunks_exact(16)).map(|(node, m)| {
+        let mut columns = [0.0; 16];
+        columns.iter_mut().zip(m).for_each(|(c, &m)| *c = f64::from(m));
+        (node, DMat4::from_cols_array(&columns))
+    });
+    Ok(Skin { joints: joints.collect() })
+}

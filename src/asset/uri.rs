@@ -1,0 +1,101 @@
+//! Resolves URIs: data URIs, and files inside the input's own folder. Nothing else is ever opened.
+
+use crate::error::{Error, Result};
+use base64::Engine;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Longest file that is read, bytes.
+pub const MAX_FILE_BYTES: u64 = 1 << 30;
+
+/// What a URI stands for.
+pub enum Target<'a> {
+    /// The text after the comma, still in base64, and the media type before it.
+    Data { media: &'a str, base64: &'a str },
+    /// A file below the input's folder.
+    File(PathBuf),
+}
+
+/// Sorts a URI, given the input's folder.
+///
+/// # Errors
+/// Names URIs with a scheme, absolute paths and paths that leave the folder.
+pub fn resolve<'a>(uri: &'a str, folder: Option<&Path>, field: &str) -> Result<Target<'a>> {
+    let refuse = |what: &str, hint: &str| {
+        let shown: String = uri.chars().take(80).collect();
+        Err(Error::input(what)
+            .with_field(field)
+            .with_found(shown)
+            .with_expected("a data URI, or a file inside the input's folder")
+            .with_hint(hint))
+    };
+    if let Some(rest) = uri.strip_prefix("data:") {
+        let Some((media, base64)) = rest.split_once(";base64,") else {
+            return refuse("a data URI is not in base64", "export again with embedded buffers in base64, or as GLB");
+        };
+        return Ok(Target::Data { media, base64 });
+    }
+    let scheme = uri.split_once(':').is_some_and(|(scheme, _)| !scheme.contains(['/', '?', '#']));
+    if scheme {
+        return refuse(
+            "nothing is fetched from elsewhere",
+            "put the file beside the input and name it by its file name",
+        );
+    }
+    let Ok(path) = percent_encoding::percent_decode_str(uri).decode_utf8() else {
+        return refuse("a URI is not UTF-8", "rename the file to plain letters");
+    };
+    let plain = |name: &str| !matches!(name, "" | "." | "..") && !name.contains(['\\', ':', '\0']);
+    if !path.split('/').filter(|name| *name != ".").all(plain) {
+        return refuse("a URI leaves the input's folder", "put the file beside the input and name it by its file name");
+    }
+    let Some(folder) = folder else {
+        return refuse("a made-up mesh has no folder to read from", "use a file as input");
+    };
+    let full = folder.join(path.as_ref());
+    // A link may point out of the folder even where the name does not.
+    if let (Ok(inside), Ok(real)) = (folder.canonicalize(), full.canonicalize())
+        && !real.starts_with(&inside)
+    {
+        return refuse("a link leaves the input's folder", "copy the file it points to into the folder");
+    }
+    Ok(Target::File(full))
+}
+
+/// The bytes of a base64 text.
+///
+/// # Errors
+/// Says that the text is not base64.
+pub fn decode_base64(text: &str, field: &str) -> Result<Vec<u8>> {
+    base64::engine::general_purpose::STANDARD.decode(text.trim_end()).map_err(|error| {
+        Error::input("a data URI is not valid base64")
+            .with_field(field)
+            .with_found(error)
+            .with_expected("base64 text")
+            .with_hint("export again, or as GLB")
+    })
+}
+
+/// A whole file, at most [`MAX_FILE_BYTES`] long.
+///
+/// # Errors
+/// Says why it cannot be read.
+pub fn read_file(path: &Path) -> Result<Vec<u8>> {
+    let fail = |error: std::io::Error| Error::input(format!("cannot read the file: {error}")).with_file(path);
+    let mut file = File::open(path).map_err(fail)?;
+    let about = file.metadata().map_err(fail)?;
+    if !about.is_file() {
+        return Err(Error::input("the input is not a file").with_file(path).with_expected("a file"));
+    }
+    if about.len() > MAX_FILE_BYTES {
+        return Err(Error::input("the file is too long")
+            .with_file(path)
+            .with_found(format!("{} bytes", about.len()))
+            .with_expected(format!("at most {MAX_FILE_BYTES} bytes"))
+            .with_hint("split the scene, or remove what needs no fur"));
+    }
+    let mut bytes = Vec::with_capacity(about.len() as usize);
+    file.by_ref().take(MAX_FILE_BYTES).read_to_end(&mut bytes).map_err(fail)?;
+    Ok(bytes)
+}
