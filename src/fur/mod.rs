@@ -2,3 +2,4 @@
 
 pub mod groom;
 pub mod grow;
+pub mod patch;
