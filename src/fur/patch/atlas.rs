@@ -14,8 +14,12 @@ use crate::error::{Error, Result};
 use crate::math::{DVec2, Vec2, Vec3};
 use std::collections::BTreeMap;
 
-/// Chosen by the table in `docs/steps/patch.md`.
-const OPTIONS: Options = Options { max_cost: 2.0, iterations: 1 };
+/// A chart's largest area in mean triangles. xatlas' time grows with the square of it, its stretch too; chosen by the
+/// table in `docs/steps/patch.md`.
+const CHART_TRIANGLES: f64 = 200.0;
+/// xatlas' own defaults.
+const MAX_COST: f32 = 2.0;
+const ITERATIONS: u32 = 1;
 
 /// See [`super::parameterise`].
 pub(super) fn parameterise(
@@ -43,7 +47,9 @@ fn chart(mesh: &Mesh, faces: &[Face]) -> Result<(Patches, Vec<u32>)> {
     let scale = if mean_edge > 0.0 { libm::exp2(-libm::log2(mean_edge).round()) } else { 1.0 } as f32;
     // Points that are one place get one position, or xatlas would cut the skin there.
     let positions: Vec<Vec3> = mesh.position_class.iter().map(|&c| mesh.positions_m[c as usize] * scale).collect();
-    let charts = charts(&positions, &mesh.triangles, OPTIONS).ok_or_else(|| {
+    let max_area = (CHART_TRIANGLES * (mean_edge * f64::from(scale)).powi(2)) as f32;
+    let options = Options { max_area, max_cost: MAX_COST, iterations: ITERATIONS };
+    let charts = charts(&positions, &mesh.triangles, options).ok_or_else(|| {
         Error::input("xatlas could not cut the mesh into charts")
             .with_found(format!("{} triangles", mesh.triangles.len()))
             .with_hint("use --parameterisation lapped")

@@ -25,6 +25,8 @@ pub(super) struct Charts {
 /// Chart options; the rest keep xatlas' defaults.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Options {
+    /// Area at which a chart stops growing, in squared units of the positions.
+    pub max_area: f32,
     /// Sum of weighted costs at which a chart stops growing: larger gives fewer charts with more stretch.
     pub max_cost: f32,
     /// Rounds of seeding and growing: more give better charts.
@@ -163,7 +165,7 @@ pub(super) fn charts(positions: &[Vec3], triangles: &[[u32; 3]], options: Option
         face_ignore: std::ptr::null(),
     };
     let chart_options = ChartOptions {
-        max_chart_area: 0.0,
+        max_chart_area: options.max_area,
         max_boundary_length: 0.0,
         proxy_fit_weight: 2.0,
         roundness_weight: 0.01,
@@ -174,10 +176,11 @@ pub(super) fn charts(positions: &[Vec3], triangles: &[[u32; 3]], options: Option
         grow_face_count: 32,
         max_iterations: options.iterations,
     };
-    // The charts are packed anew once they are turned to the comb, so xatlas' own packing is made as cheap as it gets.
+    // The charts are packed anew once they are turned to the comb, so xatlas' own packing is made cheap: one try per
+    // chart, and about one texel per triangle.
     let pack = PackOptions {
         attempts: 1,
-        texels_per_unit: 0.0,
+        texels_per_unit: 1.0,
         resolution: 0,
         max_chart_size: 1024,
         block_align: false,
