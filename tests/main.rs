@@ -2,5 +2,6 @@
 
 mod accuracy;
 mod common;
+mod field;
 mod meshes;
 mod patch;
