@@ -4,6 +4,7 @@ use crate::common::shared;
 use crate::meshes;
 use furrier::data::mesh::Mesh;
 use furrier::data::patches::Patches;
+use furrier::fur::field::{FieldSource, directions};
 use furrier::fur::patch::{Parameterisation, parameterise, uv_usable};
 use furrier::math::{Vec2, Vec3};
 
@@ -130,6 +131,30 @@ fn every_shared_mesh_is_covered_by_its_atlas() {
             let tile = mesh.diagonal_m() / 20.0;
             let patches = parameterise(&mesh, &comb, tile, ATLAS).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
             covers(&mesh, &patches).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        }
+    }
+}
+
+const LAPPED: Parameterisation = Parameterisation::Lapped { seed: 1 };
+
+#[test]
+fn lapped_patches_cover_every_shared_mesh_and_lie_flat() {
+    let Some(shared) = shared() else { return };
+    for folder in ["assets/real", "assets/hard"] {
+        let mut paths: Vec<_> =
+            std::fs::read_dir(shared.join(folder)).expect("readable").map(|e| e.expect("entry").path()).collect();
+        paths.sort();
+        for path in paths.iter().filter(|p| p.extension().is_some_and(|e| e == "glb")) {
+            let Some(mesh) = meshes::read_glb(path) else { continue };
+            let comb = directions(&mesh, &[FieldSource::Tailward { sag: 0.3 }]).expect("a comb").direction;
+            let patches = parameterise(&mesh, &comb, mesh.diagonal_m() / 20.0, LAPPED).expect("patches");
+            covers(&mesh, &patches).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+            let s = &patches.stats;
+            assert!(s.within > 0.95 && s.field_angle_rad < 10_f64.to_radians(), "{}: {s:?}", path.display());
+            assert_eq!(s.mirrored_m2, 0.0, "{}", path.display());
+            if path.ends_with("bunny_5k.glb") {
+                assert!(s.patches <= 300, "{s:?}");
+            }
         }
     }
 }

@@ -17,7 +17,8 @@ pub struct Topology {
 impl Topology {
     /// Joins triangles whose edges have the same two `point`s, run through in opposite order.
     ///
-    /// Linear in the number of triangles; edges whose ends are the same point have no neighbour.
+    /// Linear in the number of triangles. Triangles with two corners in one point have no neighbours and do not stand
+    /// between others.
     pub fn new(triangles: &[[u32; 3]], point: impl Fn(u32) -> u32) -> Self {
         let mut across = vec![NO_NEIGHBOUR; 3 * triangles.len()];
         let mut edges: HashMap<(u32, u32), (u32, u32), Mixed> = HashMap::with_capacity_and_hasher(across.len(), Mixed);
@@ -25,9 +26,13 @@ impl Topology {
             let t = triangles[e as usize / 3];
             (point(t[e as usize % 3]), point(t[(e as usize + 1) % 3]))
         };
+        let whole = |e: u32| {
+            let [a, b, c] = triangles[e as usize / 3].map(&point);
+            a != b && b != c && c != a
+        };
         for e in 0..across.len() as u32 {
-            let (a, b) = ends(e);
-            if a != b {
+            if whole(e) {
+                let (a, b) = ends(e);
                 let entry = edges.entry((a.min(b), a.max(b))).or_insert((e, 0));
                 entry.1 += 1;
                 if entry.1 == 2 && ends(entry.0) == (b, a) {

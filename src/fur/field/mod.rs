@@ -92,9 +92,10 @@ fn check(mesh: &Mesh, source: &FieldSource) -> Result<()> {
             fault("a direction that is not finite".into(), "finite numbers")
         }
         FieldSource::Tailward { sag } if !sag.is_finite() => fault(format!("sag {sag}"), "a finite number"),
-        FieldSource::Whorls(all) => match all.iter().find(|w| {
-            !(w.centre_m.is_finite() && w.spin_rad.is_finite() && w.reach_m.is_finite() && w.reach_m > 0.0)
-        }) {
+        FieldSource::Whorls(all) => match all
+            .iter()
+            .find(|w| !(w.centre_m.is_finite() && w.spin_rad.is_finite() && w.reach_m.is_finite() && w.reach_m > 0.0))
+        {
             Some(whorl) => fault(format!("{whorl:?}"), "finite numbers and a positive reach"),
             None => Ok(()),
         },

@@ -10,9 +10,8 @@ const FLAT: f32 = 1e-3;
 
 /// The wish of the first source that has one, per vertex; all vertices of a place share the first one's.
 pub(super) fn wishes(mesh: &Mesh, normals: &[Vec3], sources: &[FieldSource]) -> Vec<Wish> {
-    let wish = |v: usize| {
-        sources.iter().map(|source| one(mesh, normals, source, v)).find(|w| !matches!(w.hold, Hold::Free))
-    };
+    let wish =
+        |v: usize| sources.iter().map(|source| one(mesh, normals, source, v)).find(|w| !matches!(w.hold, Hold::Free));
     let mut all: Vec<Wish> = (0..normals.len()).map(|v| wish(v).unwrap_or_default()).collect();
     for v in 0..all.len() {
         let class = mesh.position_class[v] as usize;
@@ -30,14 +29,16 @@ fn one(mesh: &Mesh, normals: &[Vec3], source: &FieldSource, v: usize) -> Wish {
         FieldSource::Gravity => leaning(Vec3::NEG_Y, n),
         FieldSource::Tailward { sag } => leaning(Vec3::new(0.0, -sag, -1.0), n),
         FieldSource::Whorls(whorls) => {
-            let nearest = whorls.iter().map(|w| (p.distance(w.centre_m) / w.reach_m, w)).min_by(|a, b| a.0.total_cmp(&b.0));
+            let nearest =
+                whorls.iter().map(|w| (p.distance(w.centre_m) / w.reach_m, w)).min_by(|a, b| a.0.total_cmp(&b.0));
             match nearest {
                 Some((share, whorl)) if share < 1.0 => turning(whorl, p, n),
                 _ => Wish::default(),
             }
         }
         FieldSource::Strokes { lines_m, reach_m } => {
-            let segments = lines_m.iter().flat_map(|line| line.windows(2)).map(|ends| (distance(p, ends[0], ends[1]), ends));
+            let segments =
+                lines_m.iter().flat_map(|line| line.windows(2)).map(|ends| (distance(p, ends[0], ends[1]), ends));
             match segments.min_by(|a, b| a.0.total_cmp(&b.0)) {
                 Some((distance, ends)) if distance < *reach_m => kept(ends[1] - ends[0], n),
                 _ => Wish::default(),
@@ -49,7 +50,11 @@ fn one(mesh: &Mesh, normals: &[Vec3], source: &FieldSource, v: usize) -> Wish {
 /// `direction` turned into the tangent plane and kept, where that leaves anything of it.
 fn kept(direction: Vec3, n: Vec3) -> Wish {
     let flat = direction - n * n.dot(direction);
-    if flat.length() > FLAT * direction.length() { Wish { direction: flat.normalize(), hold: Hold::Kept } } else { Wish::default() }
+    if flat.length() > FLAT * direction.length() {
+        Wish { direction: flat.normalize(), hold: Hold::Kept }
+    } else {
+        Wish::default()
+    }
 }
 
 /// `direction` as a leaning that counts the less the steeper it meets the skin: on top of a back, gravity has little
@@ -58,7 +63,11 @@ fn leaning(direction: Vec3, n: Vec3) -> Wish {
     let d = direction.normalize_or_zero();
     let flat = d - n * n.dot(d);
     let strength = flat.length_squared();
-    if strength > FLAT * FLAT { Wish { direction: flat.normalize(), hold: Hold::Leaning(strength) } } else { Wish::default() }
+    if strength > FLAT * FLAT {
+        Wish { direction: flat.normalize(), hold: Hold::Leaning(strength) }
+    } else {
+        Wish::default()
+    }
 }
 
 fn turning(whorl: &Whorl, p: Vec3, n: Vec3) -> Wish {

@@ -26,8 +26,8 @@ impl Face {
         let normal = a.cross(b);
         let longest = a.length_squared().max(b.length_squared()).max((b - a).length_squared());
         if normal.length_squared() <= (THIN * longest) * (THIN * longest) || normal.length_squared() == 0.0 {
-            let along = a.length().max((b - a).length());
-            return Self { corner_m: [DVec2::new(a.length(), 0.0), DVec2::new(along, 0.0)], ..Self::default() };
+            let x = a.normalize_or(b.normalize_or_zero());
+            return Self { corner_m: [a, b].map(|p| DVec2::new(p.dot(x), 0.0)), ..Self::default() };
         }
         let x = a.normalize();
         let y = normal.normalize().cross(x);
@@ -56,6 +56,11 @@ impl Face {
         let (a, b) = (uv[1] - uv[0], uv[2] - uv[0]);
         let x = a / self.corner_m[0].x;
         Some([x, (b - x * self.corner_m[1].x) / self.corner_m[1].y])
+    }
+
+    /// The corners in the plane.
+    pub fn corners_m(&self) -> [DVec2; 3] {
+        [DVec2::ZERO, self.corner_m[0], self.corner_m[1]]
     }
 
     /// The comb over this face in its axes: the mean of its corners' directions, each first turned into the plane, of

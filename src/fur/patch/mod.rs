@@ -6,6 +6,7 @@
 mod align;
 mod atlas;
 mod face;
+mod lapped;
 mod measure;
 mod pack;
 mod uv;
@@ -21,6 +22,11 @@ pub use uv::usable as uv_usable;
 /// Where the texture coordinates come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameterisation {
+    /// Irregular patches grown over the skin along the comb.
+    Lapped {
+        /// Chooses seeds, outlines and offsets.
+        seed: u64,
+    },
     /// The asset's own set; its islands are turned and scaled, mirrored ones turned over.
     Uv {
         /// Index into [`Mesh::uv_sets`].
@@ -57,6 +63,7 @@ pub fn parameterise(mesh: &Mesh, direction: &[Vec3], tile_edge_m: f32, method: P
             .with_expected(format!("{}, one per vertex", mesh.positions_m.len())));
     }
     match method {
+        Parameterisation::Lapped { seed } => Ok(lapped::parameterise(mesh, direction, tile_edge_m, seed)),
         Parameterisation::Uv { set } => uv::parameterise(mesh, direction, tile_edge_m, set),
         Parameterisation::Atlas { texels_per_tile, padding_texels } => {
             atlas::parameterise(mesh, direction, tile_edge_m, texels_per_tile.max(1), padding_texels)
