@@ -6,4 +6,6 @@ pub mod fields;
 pub mod film;
 pub mod image;
 pub mod mesh;
+pub mod patches;
 pub mod strands;
+pub mod topology;

@@ -2,6 +2,7 @@
 
 pub mod hash;
 pub mod sampling;
+pub mod sparse;
 
 pub use glam::{DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4, Mat3, Mat4, Quat, UVec2, UVec3, Vec2, Vec3, Vec4};
 

@@ -1,0 +1,56 @@
+//! Texture coordinates for fur: the skin cut into patches that lie flat, combed along +u.
+
+use crate::math::Vec2;
+
+/// A coat's texture coordinates. Vertex arrays have one entry per coat vertex; every skin triangle appears once.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Patches {
+    /// Skin mesh vertex that the coat vertex lies on.
+    pub base_vertex: Vec<u32>,
+    /// Texture coordinate in tiles: u runs along the comb, and u × v points out of the skin.
+    pub uv: Vec<Vec2>,
+    /// Patch, chart or island.
+    pub patch: Vec<u32>,
+    /// Coat vertices of each skin triangle, in the skin's order and winding.
+    pub triangles: Vec<[u32; 3]>,
+    /// Width and height that hold all charts without overlap, in tiles; zero where texels are not unique.
+    pub extent: Vec2,
+    /// How good they are.
+    pub stats: Stats,
+}
+
+/// Mean and the 5th and 95th percentile, weighted by skin area.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// Mean.
+    pub mean: f64,
+    /// 5th percentile.
+    pub p5: f64,
+    /// 95th percentile.
+    pub p95: f64,
+}
+
+/// What a parameterisation does to the skin (`docs/steps/patch.md`). Triangles without area have no part in it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stats {
+    /// Patches, charts or islands.
+    pub patches: usize,
+    /// Triangles with texture coordinates.
+    pub faces: usize,
+    /// Skin area, m².
+    pub area_m2: f64,
+    /// Singular values of the map from skin to texture over the tile scale: 1 is neither stretched nor squeezed.
+    pub singular_values: Spread,
+    /// Share of the area whose singular values both lie in [0.7, 1.4].
+    pub within: f64,
+    /// Mean angle between +u and the comb, rad; 0 where there is no comb.
+    pub field_angle_rad: f64,
+    /// Square root of texture area over skin area, in tiles per metre; times a tile's texels it is the texel density.
+    pub tiles_per_m: Spread,
+    /// Area that the texture shows mirrored, m².
+    pub mirrored_m2: f64,
+    /// Area whose texture another place uses too, m²; measured for an asset's own coordinates.
+    pub overlapped_m2: f64,
+    /// What an artist should know, one sentence each.
+    pub warnings: Vec<String>,
+}

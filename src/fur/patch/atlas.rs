@@ -1,0 +1,136 @@
+//! Charts with texels of their own: cut and flattened by xatlas, then turned to the comb, scaled and packed by us.
+//!
+//! xatlas packs charts as its own boxes lie, stretched to whole texels. Hair needs them along the comb and true to
+//! scale, so only its charts are used: the stretch is undone, and the turned boxes are packed again.
+
+use super::align::align;
+use super::face::Face;
+use super::measure::measure;
+use super::pack::pack;
+use super::xatlas::{Options, charts};
+use crate::data::mesh::Mesh;
+use crate::data::patches::Patches;
+use crate::error::{Error, Result};
+use crate::math::{DVec2, Vec2, Vec3};
+use std::collections::BTreeMap;
+
+/// A chart's largest area in mean triangles. xatlas' time grows with the square of it, its stretch too; chosen by the
+/// table in `docs/steps/patch.md`.
+const CHART_TRIANGLES: f64 = 200.0;
+/// xatlas' own defaults.
+const MAX_COST: f32 = 2.0;
+const ITERATIONS: u32 = 1;
+
+/// See [`super::parameterise`].
+pub(super) fn parameterise(
+    mesh: &Mesh,
+    direction: &[Vec3],
+    tile_edge_m: f32,
+    texels_per_tile: u32,
+    padding_texels: u32,
+) -> Result<Patches> {
+    let faces = Face::all(mesh);
+    let (mut patches, patch_of) = chart(mesh, &faces)?;
+    undo_stretch(&faces, &patch_of, &patches.triangles, &mut patches.uv);
+    align(mesh, &faces, direction, f64::from(tile_edge_m), &patches.triangles, &patch_of, &mut patches.uv);
+    place(&mut patches, texels_per_tile as f32, padding_texels);
+    patches.stats = measure(mesh, &faces, direction, f64::from(tile_edge_m), &patches);
+    Ok(patches)
+}
+
+/// Coat vertices as xatlas cuts them, and each triangle's chart. Triangles that xatlas ignores for want of area become
+/// charts of their own.
+fn chart(mesh: &Mesh, faces: &[Face]) -> Result<(Patches, Vec<u32>)> {
+    // A mean triangle of about 1 keeps clear of xatlas' absolute limits; a power of two keeps every bit.
+    let area: f64 = faces.iter().map(|f| f.area_m2).sum();
+    let mean_edge = (area / faces.len().max(1) as f64).sqrt();
+    let scale = if mean_edge > 0.0 { libm::exp2(-libm::log2(mean_edge).round()) } else { 1.0 } as f32;
+    // Points that are one place get one position, or xatlas would cut the skin there.
+    let positions: Vec<Vec3> = mesh.position_class.iter().map(|&c| mesh.positions_m[c as usize] * scale).collect();
+    let max_area = (CHART_TRIANGLES * (mean_edge * f64::from(scale)).powi(2)) as f32;
+    let options = Options { max_area, max_cost: MAX_COST, iterations: ITERATIONS };
+    let charts = charts(&positions, &mesh.triangles, options).ok_or_else(|| {
+        Error::input("xatlas could not cut the mesh into charts")
+            .with_found(format!("{} triangles", mesh.triangles.len()))
+            .with_hint("use --parameterisation lapped")
+    })?;
+
+    let mut patches = Patches::default();
+    let mut patch_of = Vec::with_capacity(mesh.triangles.len());
+    let mut made: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+    let charted = charts.chart.iter().filter(|&&c| c != u32::MAX).max().map_or(0, |&c| c + 1);
+    let mut numbers = vec![u32::MAX; charted as usize];
+    let mut next_patch = 0;
+    for (t, triangle) in mesh.triangles.iter().enumerate() {
+        let found = charts.triangles[t];
+        let sound = found.iter().zip(triangle).all(|(&f, &v)| {
+            charts.source[f as usize] == v && charts.chart[f as usize] == charts.chart[found[0] as usize]
+        });
+        let chart = charts.chart[found[0] as usize];
+        let own = !sound || chart == u32::MAX;
+        let patch = if own { u32::MAX } else { numbers[chart as usize] };
+        let patch = if patch == u32::MAX { next_patch } else { patch };
+        if patch == next_patch {
+            next_patch += 1;
+            if !own {
+                numbers[chart as usize] = patch;
+            }
+        }
+        let flat = [Vec2::ZERO, faces[t].corner_m[0].as_vec2() * scale, faces[t].corner_m[1].as_vec2() * scale];
+        patches.triangles.push(std::array::from_fn(|k| {
+            let next = patches.base_vertex.len() as u32;
+            let vertex = *made.entry((patch, if own { k as u32 } else { found[k] })).or_insert(next);
+            if vertex == next {
+                patches.base_vertex.push(triangle[k]);
+                patches.patch.push(patch);
+                patches.uv.push(if own { flat[k] } else { Vec2::from_array(charts.uv[found[k] as usize]) });
+            }
+            vertex
+        }));
+        patch_of.push(patch);
+    }
+    Ok((patches, patch_of))
+}
+
+/// Charts come back stretched along u and v to whole texels. Flattening was conformal, so the ratio that makes the
+/// gradients of u and v equal in the mean square undoes it.
+fn undo_stretch(faces: &[Face], patch_of: &[u32], triangles: &[[u32; 3]], uv: &mut [Vec2]) {
+    let mut squares = vec![DVec2::ZERO; patch_of.iter().max().map_or(0, |&p| p as usize + 1)];
+    for (t, face) in faces.iter().enumerate() {
+        if let Some([x, y]) = face.jacobian(triangles[t].map(|v| uv[v as usize].as_dvec2())) {
+            squares[patch_of[t] as usize] += (x * x + y * y) * face.area_m2;
+        }
+    }
+    let mut done = vec![false; uv.len()];
+    for (t, triangle) in triangles.iter().enumerate() {
+        let square = squares[patch_of[t] as usize];
+        let ratio = if square.min_element() > 0.0 { (square.x / square.y).sqrt() as f32 } else { 1.0 };
+        for &v in triangle {
+            if !std::mem::replace(&mut done[v as usize], true) {
+                uv[v as usize].y *= ratio;
+            }
+        }
+    }
+}
+
+/// Gives each chart a rectangle of whole texels with padding around it.
+fn place(patches: &mut Patches, texels_per_tile: f32, padding: u32) {
+    let count = patches.patch.iter().max().map_or(0, |&p| p as usize + 1);
+    let mut low = vec![Vec2::INFINITY; count];
+    let mut high = vec![Vec2::NEG_INFINITY; count];
+    for (&p, &uv) in patches.patch.iter().zip(&patches.uv) {
+        low[p as usize] = low[p as usize].min(uv);
+        high[p as usize] = high[p as usize].max(uv);
+    }
+    let size = |p: usize| {
+        let texels = ((high[p] - low[p]) * texels_per_tile).ceil();
+        [texels.x as u32 + 2 * padding, texels.y as u32 + 2 * padding]
+    };
+    let sizes: Vec<[u32; 2]> = (0..count).map(size).collect();
+    let packing = pack(&sizes);
+    for (&p, uv) in patches.patch.iter().zip(&mut patches.uv) {
+        let at = packing.at[p as usize].map(|texel| (texel + padding) as f32 / texels_per_tile);
+        *uv += Vec2::from_array(at) - low[p as usize];
+    }
+    patches.extent = Vec2::new(packing.size[0] as f32, packing.size[1] as f32) / texels_per_tile;
+}

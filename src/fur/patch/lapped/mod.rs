@@ -1,0 +1,98 @@
+//! Lapped patches without overlap (Lengyel et al. 2001 §2.1, after Praun et al. 2000): grown over the skin one by one,
+//! each flattened along the comb, until every triangle is in exactly one.
+//!
+//! Tiles are toroidal, so a patch may be larger than its tile and lie over itself: it need not be a disc, and only
+//! stretch and the angle to the comb stop it.
+
+mod absorb;
+mod flatten;
+mod grow;
+mod patch;
+mod seed;
+
+use super::face::Face;
+use super::measure::measure;
+use crate::data::mesh::Mesh;
+use crate::data::patches::Patches;
+use crate::data::topology::Topology;
+use crate::math::hash::{combine, unit_f64};
+use crate::math::{DVec2, Vec3};
+use patch::Patch;
+use std::collections::HashMap;
+
+/// The skin as growth sees it.
+pub(super) struct Surface<'a> {
+    /// The skin.
+    pub mesh: &'a Mesh,
+    /// Its triangles in their planes.
+    pub faces: &'a [Face],
+    /// Neighbours across edges, over the mesh's own seams.
+    pub topology: Topology,
+    /// Comb over each face in its axes; its length says how well the corners agree.
+    pub comb: Vec<DVec2>,
+}
+
+impl Surface<'_> {
+    /// The place of corner `k` of triangle `t`: one number for all vertices there.
+    pub fn place(&self, t: usize, k: usize) -> u32 {
+        self.mesh.position_class[self.mesh.triangles[t][k] as usize]
+    }
+}
+
+/// See [`super::parameterise`].
+pub(super) fn parameterise(mesh: &Mesh, direction: &[Vec3], tile_edge_m: f32, seed: u64) -> Patches {
+    let faces = Face::all(mesh);
+    let surface = Surface {
+        mesh,
+        faces: &faces,
+        topology: Topology::new(&mesh.triangles, |v| mesh.position_class[v as usize]),
+        comb: faces.iter().zip(&mesh.triangles).map(|(f, t)| f.comb(t.map(|v| direction[v as usize]))).collect(),
+    };
+    let mut owner = vec![patch::FREE; faces.len()];
+    let mut patches = Vec::new();
+    let mut seeds = seed::Seeds::new(faces.len(), seed);
+    while let Some(face) = seeds.next(&owner) {
+        let patch = grow::grow(&surface, face, patches.len() as u32, seed, &mut owner);
+        seeds.cover(&surface.topology, &patch.faces, &owner);
+        patches.push(patch);
+    }
+    absorb::absorb(&surface, &mut patches, &mut owner);
+    let mut result = assemble(mesh, &patches, &owner, f64::from(tile_edge_m), seed);
+    result.stats = measure(mesh, &faces, direction, f64::from(tile_edge_m), &result);
+    result
+}
+
+/// Coat vertices: one per flat vertex of a patch and mesh vertex there, so that the mesh's own seams stay. Each patch
+/// is moved by a random part of the tile.
+fn assemble(mesh: &Mesh, patches: &[Patch], owner: &[u32], tile_edge_m: f64, seed: u64) -> Patches {
+    let mut number = vec![u32::MAX; patches.len()];
+    let mut used = 0;
+    let mut slots = vec![0_u32; mesh.triangles.len()];
+    for patch in patches {
+        for (slot, &face) in patch.faces.iter().enumerate() {
+            slots[face as usize] = slot as u32;
+        }
+    }
+    let mut result = Patches::default();
+    let mut made: HashMap<(u32, u32, u32), u32> = HashMap::new();
+    for (t, triangle) in mesh.triangles.iter().enumerate() {
+        let home = owner[t];
+        let patch = &patches[home as usize];
+        let corners = patch.corners[slots[t] as usize];
+        if number[home as usize] == u32::MAX {
+            number[home as usize] = used;
+            used += 1;
+        }
+        let key = combine(combine(seed, 0x6f66_6673), u64::from(patch.faces[0]));
+        let offset = DVec2::new(unit_f64(combine(key, 0)), unit_f64(combine(key, 1)));
+        result.triangles.push(std::array::from_fn(|k| {
+            *made.entry((home, corners[k], triangle[k])).or_insert_with(|| {
+                result.base_vertex.push(triangle[k]);
+                result.patch.push(number[home as usize]);
+                result.uv.push((patch.uv[corners[k] as usize] / tile_edge_m + offset).as_vec2());
+                result.base_vertex.len() as u32 - 1
+            })
+        }));
+    }
+    result
+}

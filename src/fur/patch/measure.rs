@@ -1,0 +1,63 @@
+//! What a parameterisation does to the skin: stretch, angle to the comb, texel density.
+
+use super::face::{Face, singular_values};
+use crate::data::mesh::Mesh;
+use crate::data::patches::{Patches, Spread, Stats};
+use crate::math::{DVec2, Vec3};
+
+/// Singular values that pass for unstretched (the bounds that `Stats::within` counts).
+pub(super) const WITHIN: [f64; 2] = [0.7, 1.4];
+
+/// Measures `patches` of `mesh` against the comb `direction`, for tiles of `tile_edge_m`.
+pub(super) fn measure(mesh: &Mesh, faces: &[Face], direction: &[Vec3], tile_edge_m: f64, patches: &Patches) -> Stats {
+    let mut stats = Stats {
+        patches: patches.patch.iter().max().map_or(0, |&p| p as usize + 1),
+        faces: patches.triangles.len(),
+        ..Stats::default()
+    };
+    let (mut values, mut densities) = (Vec::new(), Vec::new());
+    let (mut angle, mut combed) = (0.0, 0.0);
+    for (t, face) in faces.iter().enumerate() {
+        let corners = patches.triangles[t].map(|v| patches.uv[v as usize].as_dvec2() * tile_edge_m);
+        let Some(jacobian) = face.jacobian(corners) else { continue };
+        let [large, small] = singular_values(jacobian);
+        stats.area_m2 += face.area_m2;
+        values.extend([(large, face.area_m2), (small, face.area_m2)]);
+        densities.push(((large * small).sqrt() / tile_edge_m, face.area_m2));
+        if small >= WITHIN[0] && large <= WITHIN[1] {
+            stats.within += face.area_m2;
+        }
+        if jacobian[0].perp_dot(jacobian[1]) < 0.0 {
+            stats.mirrored_m2 += face.area_m2;
+        }
+        let comb = face.comb(mesh.triangles[t].map(|v| direction[v as usize]));
+        if comb != DVec2::ZERO {
+            let seen = jacobian[0] * comb.x + jacobian[1] * comb.y;
+            angle += face.area_m2 * libm::atan2(seen.y, seen.x).abs();
+            combed += face.area_m2;
+        }
+    }
+    stats.within /= stats.area_m2.max(f64::MIN_POSITIVE);
+    stats.field_angle_rad = angle / f64::max(combed, f64::MIN_POSITIVE);
+    stats.singular_values = spread(values);
+    stats.tiles_per_m = spread(densities);
+    stats
+}
+
+/// Mean and percentiles of (value, weight) pairs; zeros for none.
+pub(super) fn spread(mut values: Vec<(f64, f64)>) -> Spread {
+    values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let total: f64 = values.iter().map(|v| v.1).sum();
+    let percentile = |share: f64| {
+        let mut below = 0.0;
+        values
+            .iter()
+            .find(|v| {
+                below += v.1;
+                below >= share * total
+            })
+            .map_or(0.0, |v| v.0)
+    };
+    let mean = values.iter().map(|v| v.0 * v.1).sum::<f64>() / total.max(f64::MIN_POSITIVE);
+    Spread { mean, p5: percentile(0.05), p95: percentile(0.95) }
+}
