@@ -3,4 +3,5 @@
 mod accuracy;
 mod harness;
 mod laws;
-mod strands;
+mod pelts;
+mod ribbons;

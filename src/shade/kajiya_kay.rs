@@ -32,8 +32,7 @@ impl<R: Real> KajiyaKay<R> {
     /// θ_o = 0 and less elsewhere, as the cosine and the poles take their part.
     pub fn scatter(&self, angles: Angles<R>) -> (R, R) {
         let mirror = angles.cos_in() * angles.cos_out() - angles.sin_in * angles.sin_out;
-        let highlight =
-            if mirror > R::of(0.0) { mirror.powf(self.exponent) * self.specular_scale } else { R::of(0.0) };
+        let highlight = if mirror > R::of(0.0) { mirror.powf(self.exponent) * self.specular_scale } else { R::of(0.0) };
         (self.diffuse * R::of(1.0 / (PI * PI)), self.specular * highlight)
     }
 }

@@ -141,8 +141,7 @@ fn a_map_and_its_lights_carry_the_same_power() {
     let lights = map.median_cut(16);
     assert_eq!(lights.len(), 16);
     let sent: Vec3 = lights.iter().map(|light| light.irradiance).sum();
-    let arriving: Vec3 =
-        (0..width * height).map(|i| map.radiance[i] * map.solid_angle_sr(i / width)).sum();
+    let arriving: Vec3 = (0..width * height).map(|i| map.radiance[i] * map.solid_angle_sr(i / width)).sum();
     assert!((sent - arriving).abs().max_element() < 1e-3 * arriving.max_element(), "{sent} and {arriving}");
     let sun = map.direction(20.5, 9.5);
     let brightest = lights.iter().max_by(|a, b| a.irradiance.z.total_cmp(&b.irradiance.z)).unwrap();
