@@ -13,5 +13,6 @@ pub mod math;
 pub mod preset;
 pub mod render;
 pub mod runtime;
+pub mod shade;
 
 pub use error::{Error, Result};

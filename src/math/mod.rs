@@ -1,5 +1,6 @@
 //! Floor 0: vectors (glam), hashing, sampling. Nothing here knows of fur.
 
+pub mod fast;
 pub mod hash;
 pub mod sampling;
 pub mod sparse;

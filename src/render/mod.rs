@@ -1,9 +1,18 @@
 //! Floor 4: the hybrid renderer. One entry: a scene, rays, a depth range, a film.
 
+pub mod bins;
 pub mod bvh;
 pub mod cast;
 pub mod cone;
+pub mod develop;
+pub mod flat;
+pub mod pelt;
+pub mod picture;
 pub mod rays;
+pub mod resolve;
+pub mod skin;
+pub mod strands;
+pub mod view;
 
 use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;

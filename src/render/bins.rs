@@ -1,0 +1,117 @@
+//! Which tiles of the picture things fall into.
+
+use rayon::prelude::*;
+
+/// Edge of a tile, px.
+pub const TILE: usize = 32;
+
+/// What a thing may touch on the picture, px; nothing where `from` is past `to`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// Lowest x and y.
+    pub from: [f32; 2],
+    /// Highest x and y.
+    pub to: [f32; 2],
+}
+
+impl Reach {
+    /// Touches nothing.
+    pub const NOTHING: Self = Self { from: [f32::INFINITY; 2], to: [f32::NEG_INFINITY; 2] };
+    /// May touch every pixel.
+    pub const EVERYTHING: Self = Self { from: [f32::NEG_INFINITY; 2], to: [f32::INFINITY; 2] };
+
+    /// Grows to hold the square of half width `pad` around a point.
+    pub fn add(&mut self, x: f32, y: f32, pad: f32) {
+        self.from = [self.from[0].min(x - pad), self.from[1].min(y - pad)];
+        self.to = [self.to[0].max(x + pad), self.to[1].max(y + pad)];
+    }
+}
+
+/// The tiles of a picture, or of a band of its rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Grid {
+    /// Tiles per row.
+    pub columns: usize,
+    /// First row of tiles.
+    pub first_row: usize,
+    /// Rows of tiles.
+    pub rows: usize,
+}
+
+impl Grid {
+    /// The tiles of a whole picture of this size.
+    pub fn whole(size: [usize; 2]) -> Self {
+        Self { columns: size[0].div_ceil(TILE), first_row: 0, rows: size[1].div_ceil(TILE) }
+    }
+
+    /// Columns and rows of tiles, counted in this grid, that `reach` touches.
+    pub fn touched(&self, reach: &Reach) -> (std::ops::Range<usize>, std::ops::Range<usize>) {
+        let span = |axis: usize, first: usize, count: usize| {
+            let at = |v: f32| v / TILE as f32 - first as f32;
+            if reach.from[axis] > reach.to[axis] {
+                return 0..0;
+            }
+            // Casts to an integer saturate; NaN becomes 0.
+            let from = at(reach.from[axis]).floor().max(0.0) as usize;
+            let to = (at(reach.to[axis]).floor() + 1.0).max(0.0) as usize;
+            from.min(count)..to.min(count)
+        };
+        (span(0, 0, self.columns), span(1, self.first_row, self.rows))
+    }
+}
+
+/// Items by tile.
+#[derive(Clone, Debug, Default)]
+pub struct Bins {
+    starts: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl Bins {
+    /// Sorts the items 0 … count−1 into the tiles of `grid` that `reach` of each touches, in their order.
+    pub fn new(grid: &Grid, count: usize, reach: impl Fn(usize) -> Reach + Sync) -> Self {
+        const CHUNK: usize = 4096;
+        let chunks: Vec<Vec<(u32, u32)>> = (0..count.div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let mut pairs = Vec::new();
+                for item in chunk * CHUNK..((chunk + 1) * CHUNK).min(count) {
+                    let (columns, rows) = grid.touched(&reach(item));
+                    for row in rows {
+                        pairs.extend(columns.clone().map(|column| ((row * grid.columns + column) as u32, item as u32)));
+                    }
+                }
+                pairs
+            })
+            .collect();
+        let mut starts = vec![0_u32; grid.columns * grid.rows + 1];
+        for &(tile, _) in chunks.iter().flatten() {
+            starts[tile as usize + 1] += 1;
+        }
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut next = starts.clone();
+        let mut items = vec![0; starts[starts.len() - 1] as usize];
+        for (tile, item) in chunks.into_iter().flatten() {
+            items[next[tile as usize] as usize] = item;
+            next[tile as usize] += 1;
+        }
+        Self { starts, items }
+    }
+
+    /// The items of a tile.
+    pub fn of(&self, tile: usize) -> &[u32] {
+        &self.items[self.starts[tile] as usize..self.starts[tile + 1] as usize]
+    }
+
+    /// Items in all tiles, each counted once per tile.
+    pub fn items(&self) -> usize {
+        self.items.len()
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        4 * (self.starts.len() + self.items.len())
+    }
+}

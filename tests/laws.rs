@@ -1,0 +1,3 @@
+//! Physical laws that hold whatever the numbers are.
+
+pub mod shading;

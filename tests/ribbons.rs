@@ -1,0 +1,144 @@
+//! Guard hair as ribbons: areas, order, and agreement with rays cast at the same hairs.
+
+use crate::pelts::{self, Grown};
+use furrier::data::film::Film;
+use furrier::math::Vec3;
+use furrier::math::hash::Stream;
+use furrier::render::cast::Caster;
+use furrier::render::pelt::Pelt;
+use furrier::render::picture::{Picture, Settings, draw};
+use furrier::render::rays::Rays;
+use furrier::render::resolve::{Blending, composite, order};
+use furrier::render::strands::ribbon::{Window, rasterise};
+use furrier::render::strands::{Fragment, Knot};
+use furrier::render::{DepthRange, Scene};
+
+pub fn covered(a: &Knot, b: &Knot) -> f64 {
+    let mut sum = 0.0;
+    rasterise(a, b, Window { from: [-64, -64], to: [64, 64] }, |share| sum += f64::from(share.coverage));
+    sum
+}
+
+fn knot(x: f32, y: f32, half_px: f32) -> Knot {
+    Knot { x, y, z_m: 1.0, half_px }
+}
+
+#[test]
+fn coverage_sums_to_the_ribbons_area() {
+    let mut random = Stream::new(1);
+    for _ in 0..2000 {
+        let mut coordinate = || 20.0 * random.signed();
+        let (a, b) = ((coordinate(), coordinate()), (coordinate(), coordinate()));
+        let half_px = libm::expf(4.0 * random.signed() - 4.0);
+        let length = f64::from((a.0 - b.0).hypot(a.1 - b.1));
+        let area = 2.0 * f64::from(half_px) * length;
+        let sum = covered(&knot(a.0, a.1, half_px), &knot(b.0, b.1, half_px));
+        assert!((sum - area).abs() < 2e-3 * area + 1e-5, "{sum} of {area}");
+    }
+}
+
+#[test]
+fn a_hair_thinner_than_a_pixel_covers_its_share() {
+    let sum = covered(&knot(0.3, 0.0, 0.0005), &knot(0.7, 10.0, 0.0005));
+    assert!((sum - 0.01).abs() < 1e-4, "{sum}");
+    assert_eq!(covered(&knot(0.3, 0.0, 0.0), &knot(0.7, 10.0, 0.0)), 0.0);
+    assert_eq!(covered(&knot(2.0, 3.0, 1.0), &knot(2.0, 3.0, 1.0)), 0.0);
+}
+
+#[test]
+fn a_thousand_fragments_at_one_depth_are_ordered_by_id() {
+    let mut random = Stream::new(5);
+    let mut fragments: Vec<Fragment> = (0..1000)
+        .map(|id| Fragment { z_m: if id < 500 { 1.0 } else { 2.0 }, id, coverage: 0.002, knot: id, along: 0.5 })
+        .collect();
+    let draw = |fragments: &[Fragment]| {
+        composite(fragments, &[], Blending::Virtual { fragments: 1 }, None, |f| {
+            let radiance = Vec3::splat(f.id as f32 * 1e-3);
+            (furrier::render::resolve::Face { z_m: f.z_m, radiance, ..Default::default() }, 1.0)
+        })
+    };
+    order(&mut fragments);
+    let first = draw(&fragments);
+    assert!((first.alpha - (1.0 - 0.998_f32.powi(1000))).abs() < 1e-4, "{}", first.alpha);
+    for _ in 0..5 {
+        fragments.sort_by_cached_key(|_| random.bits());
+        order(&mut fragments);
+        assert_eq!(draw(&fragments), first);
+    }
+}
+
+fn sparse() -> Grown {
+    let (mut guard, undercoat) = pelts::mink();
+    guard.density_per_cm2 = 40.0;
+    Grown::new(pelts::bent_pelt(1), &guard, &undercoat, Vec3::X, 35.0, 3)
+}
+
+fn only_guard(grown: &Grown) -> Pelt<'_> {
+    Pelt { undercoat: None, ..grown.pelt() }
+}
+
+fn drawn(grown: &Grown, settings: &Settings) -> Picture {
+    draw(&only_guard(grown), &pelts::studio(), &pelts::camera(0.35), settings).unwrap()
+}
+
+/// Largest difference of guard hair's coverage between two films, over blocks of 8 × 8 pixels.
+pub fn worst_block(a: &Film, b: &Film) -> f32 {
+    let mut worst = 0.0_f32;
+    for y in (0..a.height).step_by(8) {
+        for x in (0..a.width).step_by(8) {
+            let mean = |film: &Film| -> f32 {
+                (0..64).map(|i| film.guard[(y + i / 8) * film.width + x + i % 8]).sum::<f32>() / 64.0
+            };
+            worst = worst.max((mean(a) - mean(b)).abs());
+        }
+    }
+    worst
+}
+
+pub fn ribbons_and_rays() -> (Film, Film) {
+    let grown = sparse();
+    let size = [128, 128];
+    let ribbons = drawn(&grown, &Settings { size, ..Settings::default() }).film;
+    let scene = Scene { guard: Some(&grown.guard), skin: Some(&grown.mesh), ..Scene::default() };
+    let rays = Rays::Perspective { camera: pelts::camera(0.35), size, supersampling: 8 };
+    (ribbons, Caster::new(scene).render(&rays, DepthRange::ALL))
+}
+
+#[test]
+fn ribbons_cover_what_rays_find() {
+    let (ribbons, rays) = ribbons_and_rays();
+    let mean = |film: &Film| film.guard.iter().map(|&g| f64::from(g)).sum::<f64>() / film.guard.len() as f64;
+    let (a, b) = (mean(&ribbons), mean(&rays));
+    // Ribbons lack the round ends of cones, and hairs are taken to lie independently within a pixel.
+    assert!((a - b).abs() < 0.015 * b, "guard hair covers {a} by ribbons, {b} by rays");
+    assert!((ribbons.coverage() - rays.coverage()).abs() < 0.01 * rays.coverage());
+    let worst = worst_block(&ribbons, &rays);
+    assert!(worst < 0.03, "{worst}");
+}
+
+#[test]
+fn bands_do_not_show() {
+    let grown = sparse();
+    let whole = drawn(&grown, &Settings { size: [160, 160], ..Settings::default() });
+    let banded = drawn(&grown, &Settings { size: [160, 160], band_bytes: 1 << 16, ..Settings::default() });
+    assert!(banded.counts.strands > whole.counts.strands, "the small budget made no bands");
+    assert_eq!(whole.film, banded.film);
+}
+
+#[test]
+fn the_order_of_strands_does_not_show() {
+    let mut grown = sparse();
+    let settings = Settings { size: [128, 128], ..Settings::default() };
+    let before = drawn(&grown, &settings).film;
+    let (points, strands) = (grown.guard.points_per_strand, &mut grown.guard);
+    let mut order: Vec<usize> = (0..strands.len()).collect();
+    let mut random = Stream::new(9);
+    order.sort_by_cached_key(|_| random.bits());
+    let old = strands.clone();
+    strands.points_m = order.iter().flat_map(|&i| &old.points_m[i * points..(i + 1) * points]).copied().collect();
+    strands.roots = order.iter().map(|&i| old.roots[i]).collect();
+    strands.root_radius_m = order.iter().map(|&i| old.root_radius_m[i]).collect();
+    strands.tint = order.iter().map(|&i| old.tint[i]).collect();
+    strands.id = order.iter().map(|&i| old.id[i]).collect();
+    assert_eq!(drawn(&grown, &settings).film, before);
+}
