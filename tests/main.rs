@@ -3,3 +3,4 @@
 mod accuracy;
 mod coats;
 mod runtime;
+mod twins;

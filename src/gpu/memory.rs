@@ -5,6 +5,29 @@ use crate::data::image::Image8;
 use crate::error::{Error, Kind, Result};
 use wgpu::util::DeviceExt;
 
+/// How the bytes of an image are to be read and filtered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coding {
+    /// Colour in sRGB coding, alpha linear.
+    Srgb,
+    /// Linear values in eight bits.
+    Linear,
+    /// Linear values, widened to half floats: software adapters round the filtered values of eight-bit textures to eight
+    /// bits again, which is too coarse where a shader takes their differences.
+    Wide,
+}
+
+/// byte/255 as the bits of a half float, rounded to nearest; 0 and 1 are exact.
+fn half_of_unorm(byte: u8) -> u16 {
+    let bits = (f32::from(byte) / 255.0).to_bits();
+    if bits == 0 {
+        return 0;
+    }
+    // 1/255 is far above the smallest normal half, so rebiasing the exponent (127 to 15) and rounding ten bits of
+    // mantissa is all there is to do.
+    ((bits - (112 << 23) + (1 << 12)) >> 13) as u16
+}
+
 /// A texture of one or more layers, with mips, and the bytes it holds.
 pub struct TextureArray {
     /// All layers and mips, as a 2D array.
@@ -25,12 +48,12 @@ impl Gpu {
         })
     }
 
-    /// A 2D array texture of `images[mip][layer]`, four channels or one; `srgb` says how four channels are coded.
+    /// A 2D array texture of `images[mip][layer]`, four channels or one, filtered as `coding` says.
     ///
     /// # Errors
     /// [`Kind::Input`] where the images are not a chain of halved, equally long mips, naming the first that is not;
     /// [`Kind::Device`] where the adapter cannot hold as many layers or texels.
-    pub fn texture_array(&self, label: &str, images: &[Vec<Image8>], srgb: bool) -> Result<TextureArray> {
+    pub fn texture_array(&self, label: &str, images: &[Vec<Image8>], coding: Coding) -> Result<TextureArray> {
         let base = images.first().and_then(|layers| layers.first());
         let base = base.ok_or_else(|| Error::input("a texture has no images").with_field(label))?;
         let layers = images[0].len();
@@ -44,10 +67,12 @@ impl Gpu {
                     limits.max_texture_dimension_2d, limits.max_texture_array_layers
                 )));
         }
-        let format = match (base.channels, srgb) {
+        let format = match (base.channels, coding) {
+            (1, Coding::Wide) => wgpu::TextureFormat::R16Float,
             (1, _) => wgpu::TextureFormat::R8Unorm,
-            (_, true) => wgpu::TextureFormat::Rgba8UnormSrgb,
-            (_, false) => wgpu::TextureFormat::Rgba8Unorm,
+            (_, Coding::Srgb) => wgpu::TextureFormat::Rgba8UnormSrgb,
+            (_, Coding::Linear) => wgpu::TextureFormat::Rgba8Unorm,
+            (_, Coding::Wide) => wgpu::TextureFormat::Rgba16Float,
         };
         let mut bytes = Vec::new();
         for (mip, row) in images.iter().enumerate() {
@@ -59,7 +84,10 @@ impl Gpu {
                         .with_found(format!("{} x {} x {}, {} layers", image.width, image.height, image.channels, row.len()))
                         .with_expected(format!("{} x {} x {}, {layers} layers", expected[0], expected[1], expected[2])));
                 }
-                bytes.extend_from_slice(&image.pixels);
+                match coding {
+                    Coding::Wide => bytes.extend(image.pixels.iter().flat_map(|&byte| half_of_unorm(byte).to_le_bytes())),
+                    Coding::Srgb | Coding::Linear => bytes.extend_from_slice(&image.pixels),
+                }
             }
         }
         let descriptor = wgpu::TextureDescriptor {
