@@ -3,4 +3,5 @@
 mod accuracy;
 mod coats;
 mod runtime;
+mod silhouette;
 mod twins;

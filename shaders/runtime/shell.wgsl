@@ -1,7 +1,7 @@
 // Shells: slab after slab of the coat, each drawn at its middle height.
 #import furrier::view::{view, ray_direction}
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
-#import furrier::coat::{CoatVertex, tile, slopes, albedo_texture, medium_texture, ends_texture, frame, ray_in_tile,
+#import furrier::coat::{CoatVertex, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, frame, ray_in_tile,
     lateral, footprint, fetch, run_through_slab, gain, decode_medium, fin_share}
 
 // Which side of the shells this pass draws: the far one first, outer to inner, then the near one, inner to outer.
@@ -80,8 +80,12 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let spot = footprint(uv_dx, uv_dy, run_through_slab(ray, slab_m, slopes[in.layer]));
     let layer = i32(in.layer);
     let medium = decode_medium(fetch(medium_texture, in.uv, layer, spot));
-    let ends = fetch(ends_texture, in.uv, layer, spot).r;
-    let surface = fetch(albedo_texture, in.uv, layer, spot);
+    // Ends count where the run is short, and colour varies little from hair to hair: one tap each.
+    let ends = textureSampleLevel(ends_texture, hair_sampler, in.uv, layer, spot.round_level).r;
+    if medium.extinction + ends == 0.0 {
+        discard;
+    }
+    let surface = textureSampleLevel(albedo_texture, hair_sampler, in.uv, layer, spot.round_level);
 
     // τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], model e of docs/steps/shells.md; g by the pixel's own mip.
     let through = slab_m * lateral(at, world_ray, ray, medium);

@@ -109,6 +109,8 @@ struct Footprint {
     line: vec2<f32>,
     taps: f32,
     level: f32,
+    // Level at which one tap covers as much as all of them.
+    round_level: f32,
 }
 
 // The ellipse of a pixel with derivatives `uv_dx`, `uv_dy`, widened by `run`: Σ_pixel + run runᵀ. Taps lie along its major
@@ -129,7 +131,8 @@ fn footprint(uv_dx: vec2<f32>, uv_dy: vec2<f32>, run: vec2<f32>) -> Footprint {
     let axis = select(vec2(1.0, 0.0), vector / size, size > 1e-20);
     let taps = clamp(ceil(major / minor - 1e-3), 1.0, MAX_TAPS);
     let level = clamp(log2(max(major, minor) / taps * tile.size), 0.0, f32(tile.mips - 1u));
-    return Footprint(axis * max(major - minor, 0.0), taps, level);
+    let round_level = clamp(log2(sqrt(max(major, minor) * minor) * tile.size), 0.0, f32(tile.mips - 1u));
+    return Footprint(axis * max(major - minor, 0.0), taps, level, round_level);
 }
 
 fn fetch(texture: texture_2d_array<f32>, uv: vec2<f32>, layer: i32, spot: Footprint) -> vec4<f32> {

@@ -109,11 +109,11 @@ impl Gpu {
         Ok(TextureArray { view, bytes: bytes.len() as u64 })
     }
 
-    /// A texture to draw into and to read in shaders or back.
+    /// A texture to draw into and, with one sample per texel, to read in shaders or back.
     ///
     /// # Errors
     /// [`Kind::Usage`] where it is larger than the adapter allows.
-    pub fn target(&self, label: &str, size: [u32; 2], format: wgpu::TextureFormat) -> Result<wgpu::Texture> {
+    pub fn target(&self, label: &str, size: [u32; 2], samples: u32, format: wgpu::TextureFormat) -> Result<wgpu::Texture> {
         let limit = self.device.limits().max_texture_dimension_2d;
         if size.iter().any(|&edge| edge == 0 || edge > limit) {
             return Err(Error::usage("the picture does not fit this adapter")
@@ -126,13 +126,16 @@ impl Gpu {
             label: Some(label),
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
             mip_level_count: 1,
-            sample_count: 1,
+            sample_count: samples,
             dimension: wgpu::TextureDimension::D2,
             format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC
-                | wgpu::TextureUsages::COPY_DST,
+            usage: if samples > 1 {
+                wgpu::TextureUsages::RENDER_ATTACHMENT
+            } else {
+                wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC
+            },
             view_formats: &[],
         }))
     }
