@@ -18,3 +18,5 @@ mod pelts;
 mod presets;
 mod ribbons;
 mod runtime;
+mod silhouette;
+mod twins;

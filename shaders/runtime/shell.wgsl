@@ -1,8 +1,8 @@
 // Shells: slab after slab of the coat, each drawn at its middle height.
 #import furrier::view::{view, ray_direction}
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
-#import furrier::coat::{CoatVertex, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, frame, ray_in_tile, lateral,
-    ends_met, footprint, run_through_slab, gain, decode_medium, fin_share}
+#import furrier::coat::{CoatVertex, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, frame, ray_in_tile,
+    lateral, footprint, fetch, run_through_slab, gain, decode_medium, fin_share}
 
 // Which side of the shells this pass draws: the far one first, outer to inner, then the near one, inner to outer.
 override NEAR_SIDE: bool = true;
@@ -79,32 +79,38 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 
     let spot = footprint(uv_dx, uv_dy, run_through_slab(ray, slab_m, slopes[in.layer]));
     let layer = i32(in.layer);
-    let medium = decode_medium(textureSampleGrad(medium_texture, hair_sampler, in.uv, layer, spot.major, spot.minor));
-    let ends = textureSampleGrad(ends_texture, hair_sampler, in.uv, layer, spot.major, spot.minor).r;
-    let surface = textureSampleGrad(albedo_texture, hair_sampler, in.uv, layer, spot.major, spot.minor);
+    let medium = decode_medium(fetch(medium_texture, in.uv, layer, spot));
+    // Ends count where the run is short, and colour varies little from hair to hair: one tap each.
+    let ends = textureSampleLevel(ends_texture, hair_sampler, in.uv, layer, spot.round_level).r;
+    if medium.extinction + ends == 0.0 {
+        discard;
+    }
+    let surface = textureSampleLevel(albedo_texture, hair_sampler, in.uv, layer, spot.round_level);
 
-    // τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], model e of docs/steps/shells.md.
-    let through = medium.extinction_per_m * slab_m * lateral(at, ray, medium.tangent);
-    let end_depth = -log(max(1.0 - ends, 1e-3)) * ends_met(at, world_ray);
+    // τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], model e of docs/steps/shells.md; g by the pixel's own mip.
+    let through = slab_m * lateral(at, world_ray, ray, medium);
+    let end_depth = -log(max(1.0 - ends, 1e-3));
+    let gained = gain(footprint(uv_dx, uv_dy, vec2(0.0)).level, ray.cosine);
     let normal = normalize(in.normal);
     let kept = select(1.0, 1.0 - fin_share(dot(normal, world_ray)), WITH_FINS);
     // Skin without hair has offsets of length 0; the last hundredth fades.
     let present = in.tint.w * smoothstep(0.0, 0.01, length_factor);
-    let depth = gain(spot.level, ray.cosine) * (through + end_depth) * present * kept;
+    let depth = gained * (through + end_depth) * present * kept;
     let opacity = 1.0 - exp(-depth);
     if opacity < INVISIBLE {
         discard;
     }
 
-    let agreement = length(medium.tangent);
-    let tangent = normalize(at.world_from_tile * medium.tangent + vec3(0.0, 0.0, 1e-9)) * agreement;
+    // m, where there is enough hair for eight bits to tell; its length says how far the hairs agree.
+    let agreement = min(length(medium.tangent) / max(medium.extinction, 1e-3 * tile.extinction_scale_per_m), 1.0);
+    let tangent = normalize(at.world_from_tile * (medium.tangent + vec3(0.0, 0.0, 1e-3))) * agreement;
     let hair = Hair(surface.rgb * in.tint.rgb, tangent, normal, -world_ray);
     let outside_depth = -log(max(surface.a, 1e-3)) * present;
     var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
     for (var i = 0u; i < view.light_count; i++) {
         let light = view.lights[i];
         let light_ray = ray_in_tile(at, light.to_light);
-        let shadow = exp(-outside_depth * lateral(at, light_ray, medium.tangent));
+        let shadow = exp(-outside_depth * lateral(at, light.to_light, light_ray, medium) / max(medium.extinction, 1e-3));
         let seen = above_horizon(dot(normal, light.to_light));
         radiance += seen * light.irradiance * scattered(hair, light.to_light, shadow, multiply_scattered(shadow, hair.albedo));
     }

@@ -31,13 +31,16 @@ fn vertex(
 
 @fragment
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
-    let albedo = in.colour * textureSample(base_texture, base_sampler, in.uv, 0).rgb;
-    let transmittance = textureSample(albedo_texture, hair_sampler, in.coat_uv, 0).a;
+    // Layer 0 of the tile: colour factor of the skin under hair, and how much light comes through.
+    let cover = textureSample(albedo_texture, hair_sampler, in.coat_uv, 0);
+    let furred = in.coat_density > 0.0;
+    let base = in.colour * textureSample(base_texture, base_sampler, in.uv, 0).rgb;
+    let albedo = base * select(vec3(1.0), cover.rgb, furred);
     let world_ray = ray_direction(in.position_m);
     let turned = normalize(in.normal);
     let normal = select(turned, -turned, dot(turned, world_ray) > 0.0);
-    let outside_depth = -log(max(transmittance, 1e-3)) * in.coat_density;
-    let gloss = select(1.0, 0.0, in.coat_density > 0.0);
+    let outside_depth = -log(max(cover.a, 1e-3)) * in.coat_density;
+    let gloss = select(1.0, 0.0, furred);
 
     var radiance = albedo * view.ambient * exp(-outside_depth);
     for (var i = 0u; i < view.light_count; i++) {

@@ -3,10 +3,10 @@
 
 const PI: f32 = 3.14159265;
 const GAIN_ANGLES: array<f32, 9> = array(0.0, 10.0, 22.0, 35.0, 48.0, 60.0, 70.0, 79.0, 86.0);
-// Below this cosine a slab is no longer a plane; longer runs would average the tile anyway.
-const MIN_COS: f32 = 0.02;
-// What samplers give at least.
-const MAX_ANISOTROPY: f32 = 16.0;
+// cos 87 degrees: past it a slab is no longer a plane.
+const MIN_COS: f32 = 0.052;
+// What graphics hardware does at most.
+const MAX_TAPS: f32 = 16.0;
 
 struct Tile {
     // Length that one unit of UV stands for, m.
@@ -48,85 +48,105 @@ struct CoatVertex {
 struct Frame {
     world_from_tile: mat3x3<f32>,
     tile_from_world: mat3x3<f32>,
-    // Inverse transpose of world_from_tile: what it does to areas, over its determinant.
-    cofactors: mat3x3<f32>,
-    determinant: f32,
+    // What 1 m³ of the tile becomes, m³.
+    volume: f32,
 }
 
 fn frame(x_axis: vec3<f32>, y_axis: vec3<f32>, z_axis: vec3<f32>) -> Frame {
-    let yz = cross(y_axis, z_axis);
-    let zx = cross(z_axis, x_axis);
     let xy = cross(x_axis, y_axis);
     // Hair lying flat would give a volume of 0; 3 degrees above the skin is as low as it goes.
-    let volume = dot(z_axis, xy);
-    let least = 0.05 * length(xy) * length(z_axis);
-    let determinant = select(-1.0, 1.0, volume >= 0.0) * max(max(abs(volume), least), 1e-20);
-    let cofactors = mat3x3(yz, zx, xy) * (1.0 / determinant);
-    return Frame(mat3x3(x_axis, y_axis, z_axis), transpose(cofactors), cofactors, determinant);
+    let signed_volume = dot(z_axis, xy);
+    let volume = max(max(abs(signed_volume), 0.05 * length(xy) * length(z_axis)), 1e-12);
+    let scale = select(-1.0, 1.0, signed_volume >= 0.0) / volume;
+    let rows = mat3x3(cross(y_axis, z_axis), cross(z_axis, x_axis), xy) * scale;
+    return Frame(mat3x3(x_axis, y_axis, z_axis), transpose(rows), volume);
 }
 
-// A direction in the tile: unit, with the cosine to the tile's z kept away from 0.
+// A direction in the tile: what 1 m of it in the world becomes, its z kept away from 0.
 struct Ray {
     direction: vec3<f32>,
+    // |cos θ| between it and the tile's z axis.
     cosine: f32,
 }
 
 fn ray_in_tile(at: Frame, world: vec3<f32>) -> Ray {
-    let direction = normalize(at.tile_from_world * world);
-    return Ray(direction, max(abs(direction.z), MIN_COS));
+    let direction = at.tile_from_world * world;
+    let size = length(direction);
+    let z = max(abs(direction.z), MIN_COS * size);
+    return Ray(vec3(direction.xy, select(-z, z, direction.z >= 0.0)), z / size);
 }
 
-// Optical depth per unit of A·Δh that a ray meets across hair of mean tangent m: sqrt(1 - (w.m)^2)/|cos θ|, times what
-// the frame does to it. In the world the hair is M t, its projected length |M t × M w| per volume det M, and that is
-// |cofactor(M) (t × w)| (docs/steps/runtime.md, "Frames that are not rotations").
-fn lateral(at: Frame, ray: Ray, tangent: vec3<f32>) -> f32 {
-    let along = dot(ray.direction, tangent);
-    let across = cross(tangent, ray.direction);
-    let size = length(across);
-    var stretch = 1.0;
-    if size > 1e-4 {
-        stretch = length(at.cofactors * (across / size));
+// What a texel of the medium holds.
+struct Medium {
+    // A, 1/m.
+    extinction: f32,
+    // A·m, 1/m, tile axes.
+    tangent: vec3<f32>,
+}
+
+fn decode_medium(texel: vec4<f32>) -> Medium {
+    let tangent = (texel.yzw * 255.0 - 128.0) / 127.0;
+    return Medium(texel.x * tile.extinction_scale_per_m, tangent * tile.extinction_scale_per_m);
+}
+
+// Optical depth that a ray along the unit vector `world` meets per metre of the tile's height. Hair keeps its diameter
+// under the frame M: it becomes |M m̂| times as long in a volume det M times as large, and the ray runs 1/|d.z| metres
+// per metre of height. For M = 1 this is A·sqrt(1 - (ω·m)²)/|cos θ|.
+fn lateral(at: Frame, world: vec3<f32>, ray: Ray, medium: Medium) -> f32 {
+    let size = length(medium.tangent);
+    var stretched = medium.extinction;
+    if size > 0.0 {
+        stretched *= length(at.world_from_tile * (medium.tangent / size));
     }
-    return sqrt(max(0.0, 1.0 - along * along)) * stretch / ray.cosine;
+    let along = dot(world, at.world_from_tile * medium.tangent);
+    return sqrt(max(0.0, stretched * stretched - along * along)) / (at.volume * abs(ray.direction.z));
 }
 
-// How much of the ends κ a ray meets: roots spread with the skin's area, and are seen under their own angle.
-fn ends_met(at: Frame, world: vec3<f32>) -> f32 {
-    let z_axis = at.world_from_tile[2];
-    let through = abs(at.determinant) * max(abs((at.tile_from_world * world).z), MIN_COS);
-    return min(abs(dot(world, normalize(z_axis))) / through, 4.0);
-}
-
-// A fetch along the ray: gradients whose ellipse is the pixel's, widened by the run through the slab, and the mip used.
+// A fetch along a line: taps of one level, evenly spread, as anisotropic samplers do. Done by hand because what drivers do
+// under that name differs: a software one blurs by half a texel more.
 struct Footprint {
-    major: vec2<f32>,
-    minor: vec2<f32>,
+    // From the first to the last tap, in UV.
+    line: vec2<f32>,
+    taps: f32,
     level: f32,
+    // Level at which one tap covers as much as all of them.
+    round_level: f32,
 }
 
-// Σ = Σ_pixel + s sᵀ; returns its axes, all in UV.
+// The ellipse of a pixel with derivatives `uv_dx`, `uv_dy`, widened by `run`: Σ_pixel + run runᵀ. Taps lie along its major
+// axis, a minor axis apart.
 fn footprint(uv_dx: vec2<f32>, uv_dy: vec2<f32>, run: vec2<f32>) -> Footprint {
     let a = uv_dx.x * uv_dx.x + uv_dy.x * uv_dy.x + run.x * run.x;
     let b = uv_dx.x * uv_dx.y + uv_dy.x * uv_dy.y + run.x * run.y;
     let c = uv_dx.y * uv_dx.y + uv_dy.y * uv_dy.y + run.y * run.y;
     let middle = 0.5 * (a + c);
-    let half_gap = length(vec2(0.5 * (a - c), b));
-    let major = sqrt(middle + half_gap);
-    let minor = sqrt(max(0.0, middle - half_gap));
-    // Half the angle of (a - c, 2b), without trigonometry: the axis is (gap + (a - c)/2, b), or its mirror where that is short.
     let d = 0.5 * (a - c);
-    var axis = select(vec2(b, half_gap - d), vec2(half_gap + d, b), d >= 0.0);
-    let size = length(axis);
-    axis = select(vec2(1.0, 0.0), axis / size, size > 1e-20);
-    let texels = max(minor, major / MAX_ANISOTROPY) * tile.size;
-    let level = clamp(log2(max(texels, 1e-6)), 0.0, f32(tile.mips - 1u));
-    return Footprint(axis * major, vec2(-axis.y, axis.x) * minor, level);
+    let half_gap = length(vec2(d, b));
+    let major = sqrt(middle + half_gap);
+    // Taps closer than a texel would see nothing new.
+    let minor = max(sqrt(max(0.0, middle - half_gap)), 1.0 / tile.size);
+    // The larger eigenvector, by whichever of its two forms is the longer.
+    let vector = select(vec2(b, half_gap - d), vec2(half_gap + d, b), d >= 0.0);
+    let size = length(vector);
+    let axis = select(vec2(1.0, 0.0), vector / size, size > 1e-20);
+    let taps = clamp(ceil(major / minor - 1e-3), 1.0, MAX_TAPS);
+    let level = clamp(log2(max(major, minor) / taps * tile.size), 0.0, f32(tile.mips - 1u));
+    let round_level = clamp(log2(sqrt(max(major, minor) * minor) * tile.size), 0.0, f32(tile.mips - 1u));
+    return Footprint(axis * max(major - minor, 0.0), taps, level, round_level);
+}
+
+fn fetch(texture: texture_2d_array<f32>, uv: vec2<f32>, layer: i32, spot: Footprint) -> vec4<f32> {
+    var sum = vec4(0.0);
+    for (var tap = 0.5; tap < spot.taps; tap += 1.0) {
+        let at = uv + spot.line * (tap / spot.taps - 0.5);
+        sum += textureSampleLevel(texture, hair_sampler, at, layer, spot.level);
+    }
+    return sum / spot.taps;
 }
 
 // The ray's sideways run through a slab against the hair's own slope k, in UV.
 fn run_through_slab(ray: Ray, slab_m: f32, slope: vec2<f32>) -> vec2<f32> {
-    let z = select(-1.0, 1.0, ray.direction.z >= 0.0) * ray.cosine;
-    return slab_m * (ray.direction.xy / z - slope) / tile.edge_m;
+    return slab_m * (ray.direction.xy / ray.direction.z - slope) / tile.edge_m;
 }
 
 fn gain_of_mip(mip: u32, degrees: f32) -> f32 {
@@ -146,18 +166,6 @@ fn gain(level: f32, cosine: f32) -> f32 {
     let mip = u32(level);
     let next = min(mip + 1u, tile.mips - 1u);
     return mix(gain_of_mip(mip, degrees), gain_of_mip(next, degrees), fract(level));
-}
-
-// What a texel of the medium holds.
-struct Medium {
-    extinction_per_m: f32,
-    tangent: vec3<f32>,
-}
-
-fn decode_medium(texel: vec4<f32>) -> Medium {
-    let weighted = (texel.yzw * 255.0 - 128.0) / 127.0;
-    let tangent = weighted / max(texel.x, 1e-3);
-    return Medium(texel.x * tile.extinction_scale_per_m, tangent / max(1.0, length(tangent)));
 }
 
 // Share of the coat that fins carry where the skin's normal is at this cosine to the view: the mean of Lengyel's weight

@@ -5,6 +5,29 @@ use crate::data::image::Image8;
 use crate::error::{Error, Kind, Result};
 use wgpu::util::DeviceExt;
 
+/// How the bytes of an image are to be read and filtered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coding {
+    /// Colour in sRGB coding, alpha linear.
+    Srgb,
+    /// Linear values in eight bits.
+    Linear,
+    /// Linear values, widened to half floats: software adapters round the filtered values of eight-bit textures to eight
+    /// bits again, which is too coarse where a shader takes their differences.
+    Wide,
+}
+
+/// byte/255 as the bits of a half float, rounded to nearest; 0 and 1 are exact.
+fn half_of_unorm(byte: u8) -> u16 {
+    let bits = (f32::from(byte) / 255.0).to_bits();
+    if bits == 0 {
+        return 0;
+    }
+    // 1/255 is far above the smallest normal half, so rebiasing the exponent (127 to 15) and rounding ten bits of
+    // mantissa is all there is to do.
+    ((bits - (112 << 23) + (1 << 12)) >> 13) as u16
+}
+
 /// A texture of one or more layers, with mips, and the bytes it holds.
 pub struct TextureArray {
     /// All layers and mips, as a 2D array.
@@ -25,12 +48,12 @@ impl Gpu {
         })
     }
 
-    /// A 2D array texture of `images[mip][layer]`, four channels or one; `srgb` says how four channels are coded.
+    /// A 2D array texture of `images[mip][layer]`, four channels or one, filtered as `coding` says.
     ///
     /// # Errors
     /// [`Kind::Input`] where the images are not a chain of halved, equally long mips, naming the first that is not;
     /// [`Kind::Device`] where the adapter cannot hold as many layers or texels.
-    pub fn texture_array(&self, label: &str, images: &[Vec<Image8>], srgb: bool) -> Result<TextureArray> {
+    pub fn texture_array(&self, label: &str, images: &[Vec<Image8>], coding: Coding) -> Result<TextureArray> {
         let base = images.first().and_then(|layers| layers.first());
         let base = base.ok_or_else(|| Error::input("a texture has no images").with_field(label))?;
         let layers = images[0].len();
@@ -44,10 +67,12 @@ impl Gpu {
                     limits.max_texture_dimension_2d, limits.max_texture_array_layers
                 )));
         }
-        let format = match (base.channels, srgb) {
+        let format = match (base.channels, coding) {
+            (1, Coding::Wide) => wgpu::TextureFormat::R16Float,
             (1, _) => wgpu::TextureFormat::R8Unorm,
-            (_, true) => wgpu::TextureFormat::Rgba8UnormSrgb,
-            (_, false) => wgpu::TextureFormat::Rgba8Unorm,
+            (_, Coding::Srgb) => wgpu::TextureFormat::Rgba8UnormSrgb,
+            (_, Coding::Linear) => wgpu::TextureFormat::Rgba8Unorm,
+            (_, Coding::Wide) => wgpu::TextureFormat::Rgba16Float,
         };
         let mut bytes = Vec::new();
         for (mip, row) in images.iter().enumerate() {
@@ -59,7 +84,10 @@ impl Gpu {
                         .with_found(format!("{} x {} x {}, {} layers", image.width, image.height, image.channels, row.len()))
                         .with_expected(format!("{} x {} x {}, {layers} layers", expected[0], expected[1], expected[2])));
                 }
-                bytes.extend_from_slice(&image.pixels);
+                match coding {
+                    Coding::Wide => bytes.extend(image.pixels.iter().flat_map(|&byte| half_of_unorm(byte).to_le_bytes())),
+                    Coding::Srgb | Coding::Linear => bytes.extend_from_slice(&image.pixels),
+                }
             }
         }
         let descriptor = wgpu::TextureDescriptor {
@@ -81,11 +109,11 @@ impl Gpu {
         Ok(TextureArray { view, bytes: bytes.len() as u64 })
     }
 
-    /// A texture to draw into and to read in shaders or back.
+    /// A texture to draw into and, with one sample per texel, to read in shaders or back.
     ///
     /// # Errors
     /// [`Kind::Usage`] where it is larger than the adapter allows.
-    pub fn target(&self, label: &str, size: [u32; 2], format: wgpu::TextureFormat) -> Result<wgpu::Texture> {
+    pub fn target(&self, label: &str, size: [u32; 2], samples: u32, format: wgpu::TextureFormat) -> Result<wgpu::Texture> {
         let limit = self.device.limits().max_texture_dimension_2d;
         if size.iter().any(|&edge| edge == 0 || edge > limit) {
             return Err(Error::usage("the picture does not fit this adapter")
@@ -98,13 +126,16 @@ impl Gpu {
             label: Some(label),
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
             mip_level_count: 1,
-            sample_count: 1,
+            sample_count: samples,
             dimension: wgpu::TextureDimension::D2,
             format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC
-                | wgpu::TextureUsages::COPY_DST,
+            usage: if samples > 1 {
+                wgpu::TextureUsages::RENDER_ATTACHMENT
+            } else {
+                wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC
+            },
             view_formats: &[],
         }))
     }

@@ -8,7 +8,7 @@ mod shader;
 mod timer;
 
 pub use adapter::{Adapter, AdapterKind, Choice, adapters, missing_adapter_hint};
-pub use memory::TextureArray;
+pub use memory::{Coding, TextureArray};
 pub use shader::{Source, compose};
 pub use timer::Timer;
 

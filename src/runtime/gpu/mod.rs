@@ -14,7 +14,7 @@ use crate::gpu::{Gpu, Timer};
 use crate::math::Vec2;
 use crate::runtime::scene::{MAX_LIGHTS, Picture, Scene, Show, View};
 use layout::ViewUniform;
-use pipelines::{COLOUR, DEPTH, Pipelines, RESOLVED};
+use pipelines::{COLOUR, DEPTH, EDGE_SAMPLES, Pipelines, RESOLVED};
 use resources::{GpuFur, GpuSkin, GpuTile};
 
 /// Time and memory of one pass.
@@ -90,10 +90,12 @@ impl<'a> Renderer<'a> {
         let furs: Vec<_> = scene.furs.iter().map(|fur| GpuFur::new(gpu, layouts, fur)).collect();
 
         let samples_size = view.size.map(|edge| edge.saturating_mul(self.samples));
-        let colour = gpu.target("samples", samples_size, COLOUR)?;
-        let depth = gpu.target("depth", samples_size, DEPTH)?;
-        let resolved = gpu.target("picture", view.size, RESOLVED)?;
-        let [colour_view, depth_view, resolved_view] = [&colour, &depth, &resolved].map(|t| t.create_view(&Default::default()));
+        let edges = gpu.target("edge samples", samples_size, EDGE_SAMPLES, COLOUR)?;
+        let depth = gpu.target("depth", samples_size, EDGE_SAMPLES, DEPTH)?;
+        let colour = gpu.target("samples", samples_size, 1, COLOUR)?;
+        let resolved = gpu.target("picture", view.size, 1, RESOLVED)?;
+        let [edges_view, depth_view, colour_view, resolved_view] =
+            [&edges, &depth, &colour, &resolved].map(|t| t.create_view(&Default::default()));
         let uniform = gpu.buffer("view", &[ViewUniform::new(view)], wgpu::BufferUsages::UNIFORM);
         let group = |layout, resource| {
             let entries = &[wgpu::BindGroupEntry { binding: 0, resource }];
@@ -110,9 +112,9 @@ impl<'a> Renderer<'a> {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some(name),
                 color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &colour_view,
+                    view: &edges_view,
                     depth_slice: None,
-                    resolve_target: None,
+                    resolve_target: (index == 3).then_some(&colour_view),
                     ops: wgpu::Operations {
                         load: if clear { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { wgpu::LoadOp::Load },
                         store: wgpu::StoreOp::Store,
@@ -146,7 +148,7 @@ impl<'a> Renderer<'a> {
             passes.iter_mut().zip(times).for_each(|(pass, ms)| pass.ms = Some(ms));
         }
         let samples = u64::from(samples_size[0]) * u64::from(samples_size[1]);
-        let target_bytes = samples * (8 + 4) + pixels.len() as u64 * 16;
+        let target_bytes = samples * (u64::from(EDGE_SAMPLES) * (8 + 4) + 8) + pixels.len() as u64 * 16;
         Ok(Drawn { picture: Picture { size: view.size, pixels }, passes, target_bytes })
     }
 

@@ -22,6 +22,8 @@ pub const FIN: Source = source!("runtime/fin.wgsl");
 /// Samples to pixels.
 pub const RESOLVE: Source = source!("runtime/resolve.wgsl");
 
+/// Places per pixel at which edges are sampled; shading happens once.
+pub const EDGE_SAMPLES: u32 = 4;
 /// Linear light with alpha while drawing.
 pub const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Depth while drawing.
@@ -191,7 +193,10 @@ fn pipeline(gpu: &Gpu, pass: &Pass<'_>) -> wgpu::RenderPipeline {
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }),
-        multisample: wgpu::MultisampleState::default(),
+        multisample: wgpu::MultisampleState {
+            count: if pass.writes_depth.is_some() { EDGE_SAMPLES } else { 1 },
+            ..Default::default()
+        },
         fragment: Some(wgpu::FragmentState {
             module: pass.shader,
             entry_point: Some("fragment"),

@@ -5,7 +5,7 @@ use super::pipelines::Layouts;
 use crate::data::coat::Tile;
 use crate::data::image::Image8;
 use crate::error::Result;
-use crate::gpu::{Gpu, TextureArray};
+use crate::gpu::{Coding, Gpu, TextureArray};
 use crate::runtime::scene::{Fur, Skin};
 
 /// Bytes of a vertex or index list.
@@ -25,8 +25,8 @@ fn view(array: &TextureArray) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::TextureView(&array.view)
 }
 
-/// Trilinear and as anisotropic as WebGPU allows; `repeat` per axis.
-fn sampler(gpu: &Gpu, repeat: [bool; 2]) -> wgpu::Sampler {
+/// Trilinear; `repeat` per axis.
+fn sampler(gpu: &Gpu, repeat: [bool; 2], anisotropy: u16) -> wgpu::Sampler {
     let mode = |repeat| if repeat { wgpu::AddressMode::Repeat } else { wgpu::AddressMode::ClampToEdge };
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         address_mode_u: mode(repeat[0]),
@@ -34,7 +34,7 @@ fn sampler(gpu: &Gpu, repeat: [bool; 2]) -> wgpu::Sampler {
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        anisotropy_clamp: 16,
+        anisotropy_clamp: anisotropy,
         ..Default::default()
     })
 }
@@ -58,17 +58,17 @@ impl GpuTile {
     /// As [`Gpu::texture_array`].
     pub fn new(gpu: &Gpu, layouts: &Layouts, tile: &Tile) -> Result<Self> {
         let shells = &tile.shells;
-        let albedo = gpu.texture_array("shell albedo", &shells.albedo, true)?;
-        let medium = gpu.texture_array("shell medium", &shells.medium, false)?;
-        let ends = gpu.texture_array("shell ends", &shells.ends, false)?;
+        let albedo = gpu.texture_array("shell albedo", &shells.albedo, Coding::Srgb)?;
+        let medium = gpu.texture_array("shell medium", &shells.medium, Coding::Wide)?;
+        let ends = gpu.texture_array("shell ends", &shells.ends, Coding::Wide)?;
         let single = |images: &[Image8]| images.iter().map(|image| vec![image.clone()]).collect::<Vec<_>>();
-        let fin_albedo = gpu.texture_array("fin albedo", &single(&tile.fin.albedo), true)?;
-        let fin_tangent = gpu.texture_array("fin tangent", &single(&tile.fin.tangent), false)?;
+        let fin_albedo = gpu.texture_array("fin albedo", &single(&tile.fin.albedo), Coding::Srgb)?;
+        let fin_tangent = gpu.texture_array("fin tangent", &single(&tile.fin.tangent), Coding::Linear)?;
         let uniform = gpu.buffer("tile", &[TileUniform::new(tile)], wgpu::BufferUsages::UNIFORM);
         let slopes: Vec<[f32; 2]> = shells.slopes.iter().map(|slope| slope.to_array()).collect();
         let slopes = gpu.buffer("slopes", &slopes, wgpu::BufferUsages::STORAGE);
         let gains = gpu.buffer("gains", &shells.gains, wgpu::BufferUsages::STORAGE);
-        let hair_sampler = sampler(gpu, [true, true]);
+        let hair_sampler = sampler(gpu, [true, true], 1);
         let group = bind(
             gpu,
             &layouts.tile,
@@ -82,7 +82,7 @@ impl GpuTile {
                 view(&ends),
             ],
         );
-        let fin_sampler = sampler(gpu, [true, false]);
+        let fin_sampler = sampler(gpu, [true, false], 16);
         let fin = bind(
             gpu,
             &layouts.fin,
@@ -117,8 +117,8 @@ impl GpuSkin {
     pub fn new(gpu: &Gpu, layouts: &Layouts, skin: &Skin<'_>) -> Result<Self> {
         let white = Image8 { width: 1, height: 1, channels: 4, pixels: vec![255; 4] };
         let image = skin.texture.unwrap_or(&white);
-        let texture = gpu.texture_array("base colour", &mip_chain(image), true)?;
-        let sampler = sampler(gpu, [true, true]);
+        let texture = gpu.texture_array("base colour", &mip_chain(image), Coding::Srgb)?;
+        let sampler = sampler(gpu, [true, true], 16);
         let material =
             bind(gpu, &layouts.material, &[wgpu::BindingResource::Sampler(&sampler), view(&texture)]);
         let vertices = SkinVertex::of(skin);
