@@ -48,7 +48,10 @@ impl Camera {
     /// [`Kind::Usage`] naming the field.
     pub fn checked(self) -> Result<Self> {
         let fault = |field: &str, found: String, expected: &str| {
-            Err(Error::new(Kind::Usage, "the camera sees nothing").with_field(field).with_found(found).with_expected(expected))
+            Err(Error::new(Kind::Usage, "the camera sees nothing")
+                .with_field(field)
+                .with_found(found)
+                .with_expected(expected))
         };
         let numbers = [self.eye, self.target, self.up];
         if let Some(at) = numbers.iter().position(|v| v.iter().any(|c| !c.is_finite())) {

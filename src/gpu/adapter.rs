@@ -129,10 +129,7 @@ pub fn missing_adapter_hint() -> &'static str {
 /// The native interfaces only: the GL one would answer silently with a software adapter that lacks what we need.
 fn instance() -> wgpu::Instance {
     let backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
-    wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends,
-        ..wgpu::InstanceDescriptor::new_without_display_handle()
-    })
+    wgpu::Instance::new(wgpu::InstanceDescriptor { backends, ..wgpu::InstanceDescriptor::new_without_display_handle() })
 }
 
 fn ranked(instance: &wgpu::Instance) -> Vec<(Adapter, wgpu::Adapter)> {

@@ -38,7 +38,12 @@ pub struct TextureArray {
 
 impl Gpu {
     /// A buffer with `contents`; never empty, because an empty one cannot be bound.
-    pub fn buffer<T: bytemuck::NoUninit>(&self, label: &str, contents: &[T], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    pub fn buffer<T: bytemuck::NoUninit>(
+        &self,
+        label: &str,
+        contents: &[T],
+        usage: wgpu::BufferUsages,
+    ) -> wgpu::Buffer {
         let bytes: &[u8] = bytemuck::cast_slice(contents);
         let placeholder = [0_u8; 256];
         self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -58,7 +63,9 @@ impl Gpu {
         let base = base.ok_or_else(|| Error::input("a texture has no images").with_field(label))?;
         let layers = images[0].len();
         let limits = self.device.limits();
-        if layers as u32 > limits.max_texture_array_layers || base.width.max(base.height) > limits.max_texture_dimension_2d {
+        if layers as u32 > limits.max_texture_array_layers
+            || base.width.max(base.height) > limits.max_texture_dimension_2d
+        {
             return Err(Error::new(Kind::Device, "a texture is too large for this adapter")
                 .with_field(label)
                 .with_found(format!("{} x {} texels, {layers} layers", base.width, base.height))
@@ -81,11 +88,22 @@ impl Gpu {
                 if [image.width, image.height, image.channels] != expected || row.len() != layers {
                     return Err(Error::input("a mip of a texture has the wrong size")
                         .with_field(format!("{label}[{mip}][{layer}]"))
-                        .with_found(format!("{} x {} x {}, {} layers", image.width, image.height, image.channels, row.len()))
-                        .with_expected(format!("{} x {} x {}, {layers} layers", expected[0], expected[1], expected[2])));
+                        .with_found(format!(
+                            "{} x {} x {}, {} layers",
+                            image.width,
+                            image.height,
+                            image.channels,
+                            row.len()
+                        ))
+                        .with_expected(format!(
+                            "{} x {} x {}, {layers} layers",
+                            expected[0], expected[1], expected[2]
+                        )));
                 }
                 match coding {
-                    Coding::Wide => bytes.extend(image.pixels.iter().flat_map(|&byte| half_of_unorm(byte).to_le_bytes())),
+                    Coding::Wide => {
+                        bytes.extend(image.pixels.iter().flat_map(|&byte| half_of_unorm(byte).to_le_bytes()))
+                    }
                     Coding::Srgb | Coding::Linear => bytes.extend_from_slice(&image.pixels),
                 }
             }
@@ -113,7 +131,13 @@ impl Gpu {
     ///
     /// # Errors
     /// [`Kind::Usage`] where it is larger than the adapter allows.
-    pub fn target(&self, label: &str, size: [u32; 2], samples: u32, format: wgpu::TextureFormat) -> Result<wgpu::Texture> {
+    pub fn target(
+        &self,
+        label: &str,
+        size: [u32; 2],
+        samples: u32,
+        format: wgpu::TextureFormat,
+    ) -> Result<wgpu::Texture> {
         let limit = self.device.limits().max_texture_dimension_2d;
         if size.iter().any(|&edge| edge == 0 || edge > limit) {
             return Err(Error::usage("the picture does not fit this adapter")

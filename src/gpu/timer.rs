@@ -40,7 +40,12 @@ impl Timer {
         let Some(queries) = &self.queries else { return Ok(None) };
         let size = u64::from(self.passes) * 16;
         let buffer = |usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor { label: Some("timer"), size, usage, mapped_at_creation: false })
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("timer"),
+                size,
+                usage,
+                mapped_at_creation: false,
+            })
         };
         let resolved = buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC);
         let readable = buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);

@@ -168,7 +168,14 @@ impl<'a> Renderer<'a> {
     }
 
     /// One side of all shells, slab after slab over all furs, so that slabs of neighbouring parts interleave.
-    fn draw_shells(&self, pass: &mut wgpu::RenderPass<'_>, furs: &[GpuFur], show: Show, near: bool, cost: &mut PassCost) {
+    fn draw_shells(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        furs: &[GpuFur],
+        show: Show,
+        near: bool,
+        cost: &mut PassCost,
+    ) {
         let pipelines = if near { &self.pipelines.near_shells } else { &self.pipelines.far_shells };
         pass.set_pipeline(&pipelines[usize::from(show.fins)]);
         let most = self.tiles.iter().map(|tile| tile.layers).max().unwrap_or(0);
@@ -210,7 +217,10 @@ impl<'a> Renderer<'a> {
                 view: target,
                 depth_slice: None,
                 resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
             })],
             ..Default::default()
         });
@@ -222,7 +232,8 @@ impl<'a> Renderer<'a> {
 
 /// A tile of nothing: transmittance 1 everywhere.
 fn bare_tile() -> Tile {
-    let texel = |channels: u32| vec![vec![Image8 { width: 1, height: 1, channels, pixels: vec![255; channels as usize] }]];
+    let texel =
+        |channels: u32| vec![vec![Image8 { width: 1, height: 1, channels, pixels: vec![255; channels as usize] }]];
     let fin = texel(4).remove(0);
     Tile {
         preset: String::new(),

@@ -144,10 +144,27 @@ impl Pipelines {
         let shells = |near: bool, with_fins: bool| {
             let constants = [("NEAR_SIDE", f64::from(near)), ("WITH_FINS", f64::from(with_fins))];
             let target = blended.clone();
-            pipeline(gpu, &Pass { shader: &shell, groups: &shell_groups, vertices: &[], constants: &constants, target, writes_depth: Some(near) })
+            pipeline(
+                gpu,
+                &Pass {
+                    shader: &shell,
+                    groups: &shell_groups,
+                    vertices: &[],
+                    constants: &constants,
+                    target,
+                    writes_depth: Some(near),
+                },
+            )
         };
         let fin_groups = [view, tile, Some(&layouts.geometry), Some(&layouts.fin)];
-        let fins = Pass { shader: &fin, groups: &fin_groups, vertices: &[], constants: &[], target: blended.clone(), writes_depth: Some(false) };
+        let fins = Pass {
+            shader: &fin,
+            groups: &fin_groups,
+            vertices: &[],
+            constants: &[],
+            target: blended.clone(),
+            writes_depth: Some(false),
+        };
         let constants = [("SAMPLES", f64::from(samples))];
         let resolve = Pass {
             shader: &resolve,

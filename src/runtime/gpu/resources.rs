@@ -119,8 +119,7 @@ impl GpuSkin {
         let image = skin.texture.unwrap_or(&white);
         let texture = gpu.texture_array("base colour", &mip_chain(image), Coding::Srgb)?;
         let sampler = sampler(gpu, [true, true], 16);
-        let material =
-            bind(gpu, &layouts.material, &[wgpu::BindingResource::Sampler(&sampler), view(&texture)]);
+        let material = bind(gpu, &layouts.material, &[wgpu::BindingResource::Sampler(&sampler), view(&texture)]);
         let vertices = SkinVertex::of(skin);
         let bytes = texture.bytes + bytes_of(&vertices) + bytes_of(&skin.triangles);
         Ok(Self {
@@ -183,7 +182,8 @@ fn mip_chain(image: &Image8) -> Vec<Vec<Image8>> {
         let mut half = Image8::new((last.width / 2).max(1), (last.height / 2).max(1), 4);
         for y in 0..half.height {
             for x in 0..half.width {
-                let at = |dx: u32, dy: u32| last.pixel((2 * x + dx).min(last.width - 1), (2 * y + dy).min(last.height - 1));
+                let at =
+                    |dx: u32, dy: u32| last.pixel((2 * x + dx).min(last.width - 1), (2 * y + dy).min(last.height - 1));
                 let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
                 let start = ((y * half.width + x) * 4) as usize;
                 for channel in 0..3 {
