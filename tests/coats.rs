@@ -129,7 +129,9 @@ fn shells(mut voxels: Vec<Vec<Voxel>>, size: u32, layers: u32, slab_m: f32, texe
         let mut mips = (vec![], vec![], vec![]);
         for layer in voxels.iter().rev() {
             let mut images = (Image8::new(size, size, 4), Image8::new(size, size, 4), Image8::new(size, size, 1));
-            let mean = layer.iter().fold((Vec3::ZERO, 1e-20), |(c, w), v| (c + v.weighted_colour, w + v.length_times_diameter));
+            let mean = layer
+                .iter()
+                .fold((Vec3::ZERO, 1e-20), |(c, w), v| (c + v.weighted_colour, w + v.length_times_diameter));
             let mean_colour = mean.0 / mean.1;
             for (i, voxel) in layer.iter().enumerate() {
                 let extinction = voxel.length_times_diameter / volume;
@@ -194,7 +196,9 @@ fn fin_texture(fin: &[Voxel], size: [u32; 2], edge_m: f32, height_m: f32, thickn
             let voxel = fin[i];
             let depth = voxel.length_times_diameter / texel_area;
             let row_voxels = &fin[row * row_length..(row + 1) * row_length];
-            let mean = row_voxels.iter().fold((Vec3::ZERO, 1e-20), |(c, w), v| (c + v.weighted_colour, w + v.length_times_diameter));
+            let mean = row_voxels
+                .iter()
+                .fold((Vec3::ZERO, 1e-20), |(c, w), v| (c + v.weighted_colour, w + v.length_times_diameter));
             let colour = (voxel.weighted_colour + mean.0 / mean.1 * 1e-12) / (voxel.length_times_diameter + 1e-12);
             let direction = (voxel.weighted_tangent + Vec3::Z * 1e-12) / (voxel.length_times_diameter + 1e-12);
             above += depth * height_m / size[1] as f32 / thickness_m;
@@ -214,7 +218,10 @@ fn mip_chain(image: Image8) -> Vec<Image8> {
         let mut half = Image8::new(last.width / 2, last.height / 2, 4);
         for i in 0..half.pixels.len() as u32 {
             let (x, y, c) = (i / 4 % half.width, i / 4 / half.width, (i % 4) as usize);
-            let sum: u32 = [(0, 0), (1, 0), (0, 1), (1, 1)].iter().map(|(dx, dy)| u32::from(last.pixel(2 * x + dx, 2 * y + dy)[c])).sum();
+            let sum: u32 = [(0, 0), (1, 0), (0, 1), (1, 1)]
+                .iter()
+                .map(|(dx, dy)| u32::from(last.pixel(2 * x + dx, 2 * y + dy)[c]))
+                .sum();
             half.pixels[i as usize] = (sum / 4) as u8;
         }
         chain.push(half);
@@ -275,14 +282,23 @@ impl Furred {
         let length = |a: u32, b: u32| self.positions_m[a as usize].distance(self.positions_m[b as usize]);
         let total: f32 = edges.iter().map(|((a, b, _), _)| length(*a, *b)).sum();
         let corner = |t: &[u32; 3], i: usize| self.positions_m[t[i] as usize];
-        let area: f32 = self.triangles.iter().map(|t| 0.5 * (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).length()).sum();
+        let area: f32 = self
+            .triangles
+            .iter()
+            .map(|t| 0.5 * (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).length())
+            .sum();
         let thickness = area / total / tile.fin.thickness_m;
         let mut stream = Stream::new(7);
         self.fins = edges
             .iter()
             .map(|&((a, b, opposite), other)| {
                 let start = stream.unit();
-                FinEdge { ends: [a, b], opposite: [opposite, other], u: [start, start + length(a, b) / tile.fin.width_m], thickness }
+                FinEdge {
+                    ends: [a, b],
+                    opposite: [opposite, other],
+                    u: [start, start + length(a, b) / tile.fin.width_m],
+                    thickness,
+                }
             })
             .collect();
         self
@@ -342,7 +358,14 @@ pub fn sphere(radius_m: f32, cells: u32, lean_rad: f32, tile: &Tile) -> Furred {
         fins: vec![],
         skin_colour: Vec3::new(0.45, 0.3, 0.25),
     };
-    let axes = [(Vec3::X, Vec3::Y), (Vec3::NEG_X, Vec3::Y), (Vec3::Z, Vec3::X), (Vec3::NEG_Z, Vec3::X), (Vec3::Y, Vec3::Z), (Vec3::NEG_Y, Vec3::Z)];
+    let axes = [
+        (Vec3::X, Vec3::Y),
+        (Vec3::NEG_X, Vec3::Y),
+        (Vec3::Z, Vec3::X),
+        (Vec3::NEG_Z, Vec3::X),
+        (Vec3::Y, Vec3::Z),
+        (Vec3::NEG_Y, Vec3::Z),
+    ];
     for (side, right) in axes {
         let up = side.cross(right);
         let first = made.positions_m.len() as u32;

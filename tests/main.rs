@@ -1,6 +1,10 @@
 //! The one test binary; each module says what it holds.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "what a test measures and why it was left out is printed")]
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "what a test measures and why it was left out is printed"
+)]
 
 mod accuracy;
 mod architecture;

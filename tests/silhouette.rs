@@ -47,7 +47,12 @@ fn camera() -> Camera {
 }
 
 fn view() -> View {
-    let camera = furrier::data::camera::Camera { eye: EYE.as_dvec3().into(), target: [0.0; 3], up: [0.0, 1.0, 0.0], vfov_deg: 18.0 };
+    let camera = furrier::data::camera::Camera {
+        eye: EYE.as_dvec3().into(),
+        target: [0.0; 3],
+        up: [0.0, 1.0, 0.0],
+        vfov_deg: 18.0,
+    };
     View {
         clip_from_world: camera.clip_from_world(furrier::math::DVec3::ZERO, 1.0, 0.05, 1.0).as_mat4(),
         eye: Vec4::from((EYE, 1.0)),
@@ -93,7 +98,8 @@ fn the_fringe_covers_what_strands_cover() {
             clump: vec![1.0; count],
             tint: vec![Vec3::ONE; count],
         };
-        let (guards, undercoats) = (grow::skin::grow(&guard, &mesh, &fields, 3), grow::skin::grow(&undercoat, &mesh, &fields, 4));
+        let (guards, undercoats) =
+            (grow::skin::grow(&guard, &mesh, &fields, 3), grow::skin::grow(&undercoat, &mesh, &fields, 4));
         let scene = Scene { guard: Some(&guards), undercoat: Some(&undercoats), skin: Some(&mesh), torus_m: None };
         let rays = Rays::Perspective { camera: camera(), size: [PIXELS; 2], supersampling: 3 };
         let truth = Caster::new(scene).render(&rays, DepthRange::ALL);
