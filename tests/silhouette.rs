@@ -78,6 +78,7 @@ fn the_fringe_covers_what_strands_cover() {
             shells: ShellParameters { tile_mm: 8.0, ..ShellParameters::default() },
             fins: FinParameters::default(),
             skin: Vec3::splat(0.5),
+            lean_deg: 0.0,
         };
         let tiles = [bake(&hair, &recipe)];
         let height_m = tiles[0].height_m;
