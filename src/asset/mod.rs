@@ -8,6 +8,7 @@ mod encode;
 mod glb;
 pub mod image;
 mod json;
+pub mod ktx2;
 pub mod material;
 mod meshopt;
 mod obj;
@@ -20,7 +21,9 @@ pub mod scene;
 mod select;
 mod uri;
 mod validate;
+pub mod write;
 
+pub use coat::{Fallback, read_coat, write_coat};
 pub use document::Document;
 pub use part::Part;
 pub use pose::{Pose, Posed};
