@@ -74,6 +74,22 @@ fn every_hard_file_ends_as_its_readme_says() {
 }
 
 #[test]
+fn samples_are_sound_and_of_the_stated_size() {
+    for (name, triangles, area_cm2) in [("cylinder", 3584, 190.0), ("hat", 5632, 1500.0), ("plane", 512, 400.0)] {
+        let asset = asset::load(&format!("sample:{name}")).expect("a sample loads");
+        let mesh = asset.parts[0].mesh(1.0).expect("a sample is sound");
+        let area: f32 = (0..mesh.triangles.len()).map(|t| mesh.area_m2(t)).sum();
+        assert_eq!(mesh.triangles.len(), triangles, "{name}");
+        assert!((area * 1e4 / area_cm2 - 1.0).abs() < 0.01, "{name} has {} cm²", area * 1e4);
+    }
+    for name in asset::sample::NAMES {
+        let asset = asset::load(&format!("sample:{name}")).expect("a sample loads");
+        assert_eq!(asset.warnings, Vec::<String>::new(), "{name}");
+        assert_eq!(unsound(&asset), None, "{name}");
+    }
+}
+
+#[test]
 fn the_judge_of_hard_files_sees_faults() {
     let good = asset::load("sample:sphere");
     let bad = Err(Error::input("no field"));

@@ -67,7 +67,7 @@ impl Document {
         Self { json, binary: Vec::new(), name: PathBuf::from(name), folder: None, files: Vec::new() }
     }
 
-    pub(crate) fn root(&self) -> At<'_> {
+    pub(super) fn root(&self) -> At<'_> {
         At::root(&self.json)
     }
 
@@ -143,7 +143,7 @@ impl Document {
             let length = length_at.size()?;
             let bytes: Vec<u8> = match buffer.get("uri") {
                 Some(at) => match uri::resolve(at.text()?, self.folder.as_deref(), &at.path)? {
-                    uri::Target::Data { base64, .. } => uri::decode_base64(base64, &at.path)?,
+                    uri::Target::Data { base64 } => uri::decode_base64(base64, &at.path)?,
                     uri::Target::File(path) => {
                         files.push(path.clone());
                         uri::read_file(&path).map_err(|e| Error { field: Some(at.path.clone()), ..e })?

@@ -35,7 +35,7 @@ impl Document {
         }
         let Some(at) = image.get("uri") else { return Ok(None) };
         match uri::resolve(at.text()?, self.folder.as_deref(), &at.path)? {
-            uri::Target::Data { base64, .. } => uri::decode_base64(base64, &at.path).map(Some),
+            uri::Target::Data { base64 } => uri::decode_base64(base64, &at.path).map(Some),
             uri::Target::File(path) if path.exists() => uri::read_file(&path).map(Some),
             uri::Target::File(_) => Ok(None),
         }

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 /// A value inside a document, with the path that leads there.
 #[derive(Clone, Debug)]
-pub(crate) struct At<'a> {
+pub struct At<'a> {
     pub value: &'a Value,
     pub path: String,
 }

@@ -3,6 +3,7 @@
 use super::document::Document;
 use super::image::Found;
 use super::json::At;
+use super::repair::Notes;
 use crate::data::image::{Image8, linear_from_srgb};
 use crate::error::Result;
 use crate::math::{Vec2, Vec4};
@@ -56,7 +57,7 @@ impl BaseColour {
     ///
     /// # Errors
     /// Names images whose header claims too many pixels, or that lie outside the input's folder.
-    pub fn of(document: &Document, index: usize, warnings: &mut Vec<String>) -> Result<Self> {
+    pub fn of(document: &Document, index: usize, notes: &mut Notes) -> Result<Self> {
         let material = document.root().entry("materials", index)?;
         let Some(pbr) = material.get("pbrMetallicRoughness") else { return Ok(Self::default()) };
         let factor = pbr.get("baseColorFactor").map_or(Ok([1.0; 4]), |at| at.numbers::<4>())?;
@@ -71,7 +72,7 @@ impl BaseColour {
                 Found::Foreign => Some("is neither PNG, JPEG nor WebP"),
             };
             if let Some(fault) = fault {
-                warnings.push(format!("images[{image}]{name} {fault}; the base colour factor is used alone"));
+                notes.warn(format!("images[{image}]{name} {fault}; the base colour factor is used alone"));
                 texture = None;
             }
         }

@@ -8,8 +8,10 @@ mod encode;
 mod glb;
 pub mod image;
 mod json;
+pub mod ktx2;
 pub mod material;
 mod meshopt;
+mod obj;
 pub mod part;
 pub mod pose;
 pub mod primitive;
@@ -19,7 +21,9 @@ pub mod scene;
 mod select;
 mod uri;
 mod validate;
+pub mod write;
 
+pub use coat::{Fallback, read_coat, write_coat};
 pub use document::Document;
 pub use part::Part;
 pub use pose::{Pose, Posed};
@@ -56,6 +60,9 @@ pub fn load(input: &str) -> Result<Asset> {
         let path = Path::new(input);
         let mut read = || {
             let bytes = uri::read_file(path)?;
+            if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj")) {
+                return obj::read(&bytes, path, &mut warnings);
+            }
             Document::parse(&bytes, path, &mut warnings)
         };
         read().map_err(|error| error.with_file(path))?
@@ -69,9 +76,11 @@ impl Asset {
     ///
     /// # Errors
     /// Names what cannot be used.
-    pub fn new(document: Document, mut warnings: Vec<String>) -> Result<Self> {
+    pub fn new(mut document: Document, warnings: Vec<String>) -> Result<Self> {
         let scene = Scene::of(&document)?;
-        let (parts, diagonal_units) = part::collect(&document, &scene, &mut warnings)?;
-        Ok(Self { document, scene, parts, diagonal_units, warnings })
+        let mut notes = repair::Notes { warnings, mended: Vec::new() };
+        let (parts, diagonal_units) = part::collect(&document, &scene, &mut notes)?;
+        repair::apply(&mut document, &mut notes)?;
+        Ok(Self { document, scene, parts, diagonal_units, warnings: notes.warnings })
     }
 }

@@ -3,6 +3,7 @@
 use super::document::Document;
 use super::material::BaseColour;
 use super::primitive::Primitive;
+use super::repair::Notes;
 use super::scene::Scene;
 use crate::data::mesh::Mesh;
 use crate::error::{Error, Result};
@@ -150,7 +151,7 @@ pub(super) fn world_normal(map: &DMat3, normal: Vec3) -> Vec3 {
 ///
 /// # Errors
 /// Names what cannot be used; also when there is no triangle at all.
-pub fn collect(document: &Document, scene: &Scene, warnings: &mut Vec<String>) -> Result<(Vec<Part>, f64)> {
+pub fn collect(document: &Document, scene: &Scene, notes: &mut Notes) -> Result<(Vec<Part>, f64)> {
     let root = document.root();
     let nodes = root.list("nodes")?;
     let world = scene.world(&scene.local);
@@ -178,9 +179,9 @@ pub fn collect(document: &Document, scene: &Scene, warnings: &mut Vec<String>) -
                 _ => return Err(at.need("mode")?.fault("0 to 6")),
             }
             let skin = nodes[nodes_of[0]].reference("skin", "skins", scene.skins.len())?;
-            let stored = Primitive::read(document, at, skin.map(|s| scene.skins[s].joints.len()), warnings)?;
+            let stored = Primitive::read(document, at, skin.map(|s| scene.skins[s].joints.len()), notes)?;
             if stored.triangles.is_empty() {
-                warnings.push(format!("{}: no triangles; passed over", at.path));
+                notes.warn(format!("{}: no triangles; passed over", at.path));
                 continue;
             }
             vertices += stored.positions.len();
@@ -198,8 +199,7 @@ pub fn collect(document: &Document, scene: &Scene, warnings: &mut Vec<String>) -
                     skin,
                     material,
                     material_name: material_name(document, material)?,
-                    base_colour: material
-                        .map_or(Ok(BaseColour::default()), |m| BaseColour::of(document, m, warnings))?,
+                    base_colour: material.map_or(Ok(BaseColour::default()), |m| BaseColour::of(document, m, notes))?,
                     stored,
                     centre_units: DVec3::ZERO,
                     world_from_local: Vec::new(),
@@ -209,7 +209,7 @@ pub fn collect(document: &Document, scene: &Scene, warnings: &mut Vec<String>) -
         }
     }
     if passed_over > 0 {
-        warnings.push(format!("{passed_over} primitives of points or lines passed over"));
+        notes.warn(format!("{passed_over} primitives of points or lines passed over"));
     }
     if parts.is_empty() {
         return Err(Error::input("there is nothing that fur could grow on")

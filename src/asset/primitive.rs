@@ -2,6 +2,7 @@
 
 use super::document::Document;
 use super::json::At;
+use super::repair::{self, Mended, Notes};
 use crate::data::mesh::position_classes;
 use crate::error::{Error, Result};
 use crate::math::{DVec3, Vec2, Vec3, Vec4};
@@ -48,7 +49,7 @@ impl Primitive {
     ///
     /// # Errors
     /// Names the accessor and the element that cannot be used.
-    pub fn read(document: &Document, at: &At<'_>, joints: Option<usize>, warnings: &mut Vec<String>) -> Result<Self> {
+    pub fn read(document: &Document, at: &At<'_>, joints: Option<usize>, notes: &mut Notes) -> Result<Self> {
         let attributes = at.need("attributes")?;
         let positions_at = attributes.need("POSITION")?;
         let positions = vectors(document, &positions_at)?;
@@ -60,17 +61,19 @@ impl Primitive {
                 .with_hint("delete or move the vertex in the modelling program"));
         }
         let mut primitive = Self { positions, ..Self::default() };
-        primitive.triangles = triangles(document, at, primitive.positions.len(), warnings)?;
-        super::repair::drop_degenerate(&mut primitive, &at.path, warnings);
+        primitive.triangles = triangles(document, at, primitive.positions.len(), notes)?;
+        repair::drop_degenerate(&mut primitive, &at.path, notes);
         primitive.position_class = classes(&primitive.positions, &primitive.triangles);
-        primitive.read_attributes(document, &attributes, warnings)?;
-        if let Some(normals) = attributes.get("NORMAL") {
-            primitive.normals = vectors(document, &normals)?;
+        primitive.read_attributes(document, &attributes, notes)?;
+        let normals = attributes.get("NORMAL");
+        if let Some(normals) = &normals {
+            primitive.normals = vectors(document, normals)?;
         }
-        super::repair::normals(&mut primitive, &at.path, warnings);
-        super::repair::report_topology(&primitive, &at.path, warnings);
+        let accessor = normals.map(|at| at.size()).transpose()?;
+        repair::normals(&mut primitive, accessor, &at.path, notes);
+        repair::report_topology(&primitive, &at.path, notes);
         if let Some(joints) = joints {
-            primitive.influences = influences(document, &attributes, primitive.positions.len(), joints, warnings)?;
+            primitive.influences = influences(document, &attributes, primitive.positions.len(), joints, notes)?;
         }
         for target in at.list("targets")? {
             let read = |key: &str| target.get(key).map_or(Ok(Vec::new()), |at| vectors(document, &at));
@@ -83,35 +86,28 @@ impl Primitive {
         Ok(primitive)
     }
 
-    fn read_attributes(&mut self, document: &Document, attributes: &At<'_>, warnings: &mut Vec<String>) -> Result<()> {
+    fn read_attributes(&mut self, document: &Document, attributes: &At<'_>, notes: &mut Notes) -> Result<()> {
+        let mut read = |at: &At<'_>, width: usize| -> Result<Vec<f32>> {
+            let mut values = document.floats(at.size()?, width)?;
+            notes.mend(&mut values, width, at)?;
+            Ok(values)
+        };
         while let Some(at) = attributes.get(&format!("TEXCOORD_{}", self.uv_sets.len())) {
-            let mut set: Vec<Vec2> = document.floats(at.size()?, 2)?.chunks_exact(2).map(Vec2::from_slice).collect();
-            super::repair::zero_unless_finite(&mut set, |uv| uv.is_finite(), &at.path, warnings);
-            if set.iter().all(|uv| *uv == Vec2::ZERO) {
-                warnings.push(format!("{}: every texture coordinate is (0, 0)", at.path));
-            }
-            self.uv_sets.push(set);
+            self.uv_sets.push(read(&at, 2)?.chunks_exact(2).map(Vec2::from_slice).collect());
         }
         if let Some(at) = attributes.get("COLOR_0") {
-            let index = at.size()?;
-            let components = if super::accessor::Layout::of(document, index)?.components == 3 { 3 } else { 4 };
-            let floats = document.floats(index, components)?;
-            let mut colours: Vec<Vec4> = floats
-                .chunks_exact(components)
-                .map(|c| Vec4::new(c[0], c[1], c[2], c.get(3).copied().unwrap_or(1.0)))
-                .collect();
-            super::repair::zero_unless_finite(&mut colours, |c| c.is_finite(), &at.path, warnings);
-            self.colour = Some(colours);
+            let width = if super::accessor::Layout::of(document, at.size()?)?.components == 3 { 3 } else { 4 };
+            let colour = |c: &[f32]| Vec4::new(c[0], c[1], c[2], c.get(3).copied().unwrap_or(1.0));
+            self.colour = Some(read(&at, width)?.chunks_exact(width).map(colour).collect());
         }
         if let Some(at) = attributes.get("_FUR_LENGTH") {
-            let mut lengths = document.floats(at.size()?, 1)?;
-            super::repair::zero_unless_finite(&mut lengths, |l| l.is_finite(), &at.path, warnings);
-            self.fur_length = Some(lengths.into_iter().map(|l| l.max(0.0)).collect());
+            self.fur_length = Some(read(&at, 1)?.into_iter().map(|length| length.max(0.0)).collect());
         }
         if let Some(at) = attributes.get("_FUR_DIRECTION") {
-            let mut directions = vectors(document, &at)?;
-            super::repair::zero_unless_finite(&mut directions, |d| d.is_finite(), &at.path, warnings);
-            self.fur_direction = Some(directions);
+            self.fur_direction = Some(read(&at, 3)?.chunks_exact(3).map(Vec3::from_slice).collect());
+        }
+        for (i, _) in self.uv_sets.iter().enumerate().filter(|(_, set)| set.iter().all(|uv| *uv == Vec2::ZERO)) {
+            notes.warn(format!("{}.TEXCOORD_{i}: every texture coordinate is (0, 0)", attributes.path));
         }
         Ok(())
     }
@@ -122,7 +118,7 @@ fn vectors(document: &Document, at: &At<'_>) -> Result<Vec<Vec3>> {
 }
 
 /// Corner indices of modes 4 (triangles), 5 (strip) and 6 (fan).
-fn triangles(document: &Document, at: &At<'_>, vertices: usize, warnings: &mut Vec<String>) -> Result<Vec<[u32; 3]>> {
+fn triangles(document: &Document, at: &At<'_>, vertices: usize, notes: &mut Notes) -> Result<Vec<[u32; 3]>> {
     let indices = match at.get("indices") {
         Some(indices_at) => {
             let indices = document.integers(indices_at.size()?, 1)?;
@@ -144,11 +140,7 @@ fn triangles(document: &Document, at: &At<'_>, vertices: usize, warnings: &mut V
         _ => {
             let (triangles, rest) = indices.as_chunks::<3>();
             if !rest.is_empty() {
-                warnings.push(format!(
-                    "{}: {} indices beyond the last whole triangle passed over",
-                    at.path,
-                    rest.len()
-                ));
+                notes.warn(format!("{}: {} indices beyond the last whole triangle passed over", at.path, rest.len()));
             }
             triangles.to_vec()
         }
@@ -180,19 +172,15 @@ fn influences(
     attributes: &At<'_>,
     vertices: usize,
     skin_joints: usize,
-    warnings: &mut Vec<String>,
+    notes: &mut Notes,
 ) -> Result<Option<Vec<Influences>>> {
     let mut list = vec![Influences::default(); vertices];
-    let mut found = false;
+    let mut weights_at = Vec::new();
     for set in 0..2 {
-        let (Some(joints), Some(weights)) =
-            (attributes.get(&format!("JOINTS_{set}")), attributes.get(&format!("WEIGHTS_{set}")))
-        else {
-            break;
-        };
-        found = true;
-        let (joint_values, weight_values) =
-            (document.integers(joints.size()?, 4)?, document.floats(weights.size()?, 4)?);
+        let names = [format!("JOINTS_{set}"), format!("WEIGHTS_{set}")];
+        let (Some(joints), Some(weights)) = (attributes.get(&names[0]), attributes.get(&names[1])) else { break };
+        let joint_values = document.integers(joints.size()?, 4)?;
+        let weight_values = document.floats(weights.size()?, 4)?;
         for (v, (j, w)) in joint_values.chunks_exact(4).zip(weight_values.chunks_exact(4)).enumerate() {
             for k in 0..4 {
                 if j[k] as usize >= skin_joints {
@@ -205,29 +193,32 @@ fn influences(
                 list[v][set * 4 + k] = (j[k] as u16, if w[k].is_finite() { w[k].max(0.0) } else { 0.0 });
             }
         }
+        weights_at.push(weights);
     }
-    if !found {
+    if weights_at.is_empty() {
         return Ok(None);
     }
     let (mut uneven, mut loose) = (0, 0);
     for entry in &mut list {
         let sum: f32 = entry.iter().map(|&(_, w)| w).sum();
         if sum > 0.0 && sum.is_finite() {
-            uneven += usize::from((sum - 1.0).abs() > 0.01);
+            uneven += usize::from((sum - 1.0).abs() > 0.02);
             entry.iter_mut().for_each(|(_, w)| *w /= sum);
         } else {
             loose += 1;
-            entry.iter_mut().for_each(|(_, w)| *w = 0.0);
+            *entry = Influences::default();
             entry[0].1 = 1.0;
         }
     }
-    if uneven > 0 {
-        warnings
-            .push(format!("{}: weights of {uneven} vertices do not sum to 1; scaled for the bake", attributes.path));
-    }
-    if loose > 0 {
-        warnings
-            .push(format!("{}: {loose} vertices have no weights; taken to hang on their first joint", attributes.path));
+    if uneven + loose > 0 {
+        notes.warn(format!(
+            "{}: the weights of {uneven} vertices do not sum to 1 and {loose} have none; scaled, or hung on the first joint",
+            attributes.path
+        ));
+        for (set, at) in weights_at.iter().enumerate() {
+            let values = list.iter().flat_map(|entry| &entry[set * 4..set * 4 + 4]).map(|&(_, w)| w).collect();
+            notes.mended.push(Mended { accessor: at.size()?, width: 4, values });
+        }
     }
     Ok(Some(list))
 }

@@ -11,8 +11,8 @@ pub const MAX_FILE_BYTES: u64 = 1 << 30;
 
 /// What a URI stands for.
 pub enum Target<'a> {
-    /// The text after the comma, still in base64, and the media type before it.
-    Data { media: &'a str, base64: &'a str },
+    /// The text after the comma, still in base64.
+    Data { base64: &'a str },
     /// A file below the input's folder.
     File(PathBuf),
 }
@@ -31,10 +31,10 @@ pub fn resolve<'a>(uri: &'a str, folder: Option<&Path>, field: &str) -> Result<T
             .with_hint(hint))
     };
     if let Some(rest) = uri.strip_prefix("data:") {
-        let Some((media, base64)) = rest.split_once(";base64,") else {
+        let Some((_, base64)) = rest.split_once(";base64,") else {
             return refuse("a data URI is not in base64", "export again with embedded buffers in base64, or as GLB");
         };
-        return Ok(Target::Data { media, base64 });
+        return Ok(Target::Data { base64 });
     }
     let scheme = uri.split_once(':').is_some_and(|(scheme, _)| !scheme.contains(['/', '?', '#']));
     if scheme {

@@ -1,5 +1,5 @@
 //! A made animal.
 use super::super::document::Document;
 pub fn document() -> Document {
-    Document::made("sample:creature")
+    super::document("sphere").unwrap()
 }

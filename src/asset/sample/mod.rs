@@ -82,7 +82,7 @@ impl Shape {
 
     fn add_triangle(&mut self, triangle: [u32; 3]) {
         let [a, b, c] = triangle.map(|v| self.positions[v as usize]);
-        if (b - a).cross(c - a).length() > 1e-12 {
+        if (b - a).cross(c - a).length() > 1e-9 {
             self.triangles.push(triangle);
         }
     }

@@ -1,0 +1,225 @@
+//! Shells as plain glTF, for viewers that do not know the extension.
+
+use super::flatten;
+use super::set_extension;
+use super::write::part_of;
+use crate::asset::accessor::Layout;
+use crate::asset::document::Document;
+use crate::asset::encode::Use;
+use crate::asset::json::At;
+use crate::asset::pose::turn;
+use crate::asset::{Asset, Part};
+use crate::data::coat::{Coat, CoatPrimitive};
+use crate::error::Result;
+use crate::math::{Vec3, Vec4};
+use serde_json::{Value, json};
+
+/// What viewers without the extension get to see.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fallback {
+    /// The skin alone.
+    None,
+    /// This many shells of plain glTF over the skin, at most one per slab.
+    Shells(u32),
+}
+
+/// Adds `count` shells for every coat primitive, inner to outer, in one mesh per base mesh.
+///
+/// All shells of a primitive share their vertex accessors and differ in their range of indices: viewers sort
+/// transparent meshes by the middle of their bounds, and so keep them in this order.
+pub fn add(document: &mut Document, asset: &Asset, coat: &Coat, count: u32) -> Result<()> {
+    let materials = materials(document, coat, count)?;
+    let meshes: std::collections::BTreeSet<usize> = coat.primitives.iter().map(|p| p.mesh).collect();
+    for mesh in meshes {
+        let worn: Vec<&CoatPrimitive> = coat.primitives.iter().filter(|p| p.mesh == mesh).collect();
+        let mut stacks = Vec::new();
+        for primitive in &worn {
+            let part = part_of(asset, primitive)?;
+            stacks.push(stack(document, asset, part, primitive, &materials[primitive.tile])?);
+        }
+        let most = stacks.iter().map(Vec::len).max().unwrap_or(0);
+        let primitives: Vec<Value> =
+            (0..most).flat_map(|shell| stacks.iter().filter_map(move |stack| stack.get(shell).cloned())).collect();
+        let base = &document.json["meshes"][mesh];
+        let name = base["name"].as_str().unwrap_or("mesh").to_owned();
+        let mut shells = json!({"name": format!("{name} fur shells"), "primitives": primitives});
+        // Morph weights and the names that tools show for them.
+        let names = &base["extras"]["targetNames"];
+        if names.is_array() {
+            shells["extras"] = json!({"targetNames": names});
+        }
+        if base["weights"].is_array() {
+            shells["weights"] = base["weights"].clone();
+        }
+        set_extension(&mut shells, json!({"fallback": true}));
+        let shells = document.push("meshes", shells);
+        for &node in &part_of(asset, worn[0])?.nodes {
+            place(document, node, shells, &name)?;
+        }
+    }
+    Ok(())
+}
+
+/// Per tile, per shell: a material with the shell's texture.
+fn materials(document: &mut Document, coat: &Coat, count: u32) -> Result<Vec<Vec<usize>>> {
+    let sampler =
+        document.push("samplers", json!({"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497}));
+    let mut all = Vec::new();
+    for tile in &coat.tiles {
+        let mut of_tile = Vec::new();
+        for (shell, image) in flatten::shells(&tile.shells, tile.height_m, count).iter().enumerate() {
+            let view = document.push_view(&flatten::png(image)?, None);
+            let name = format!("{} fur shell {}", tile.preset, shell + 1);
+            let image = document.push("images", json!({"name": name, "mimeType": "image/png", "bufferView": view}));
+            let texture = document.push("textures", json!({"sampler": sampler, "source": image}));
+            // Blended, not masked: a mask at one half erases sparse outer shells. Where limbs cross, the skin still
+            // hides what is behind it; only fringes may be drawn in the wrong order.
+            of_tile.push(document.push(
+                "materials",
+                json!({
+                    "name": name,
+                    "alphaMode": "BLEND",
+                    "pbrMetallicRoughness": {"baseColorTexture": {"index": texture}, "metallicFactor": 0.0, "roughnessFactor": 1.0},
+                }),
+            ));
+        }
+        all.push(of_tile);
+    }
+    Ok(all)
+}
+
+/// The shells of one coat primitive as glTF primitives, inner to outer.
+fn stack(
+    document: &mut Document,
+    asset: &Asset,
+    part: &Part,
+    worn: &CoatPrimitive,
+    materials: &[usize],
+) -> Result<Vec<Value>> {
+    let (n, shells) = (worn.base_vertex.len(), materials.len());
+    let vertices = || (0..shells).flat_map(|shell| (0..n).map(move |v| ((shell as f32 + 0.5) / shells as f32, v)));
+    let base = |v: usize| worn.base_vertex[v] as usize;
+    let positions: Vec<Vec3> = vertices().map(|(h, v)| part.stored.positions[base(v)] + h * worn.offset[v]).collect();
+    let normals: Vec<Vec3> = vertices().map(|(_, v)| part.stored.normals[base(v)]).collect();
+    let uvs: Vec<_> = vertices().map(|(_, v)| worn.uv[v]).collect();
+    let mut attributes = json!({
+        "POSITION": document.push_positions(&positions, Use::Vertices),
+        "NORMAL": document.push_vec3(&normals, Use::Vertices),
+        "TEXCOORD_0": document.push_vec2(&uvs, Use::Vertices),
+    });
+    if worn.tint.iter().any(|tint| *tint != Vec4::ONE) {
+        let tints: Vec<Vec4> = vertices().map(|(_, v)| worn.tint[v].clamp(Vec4::ZERO, Vec4::ONE)).collect();
+        attributes["COLOR_0"] = json!(document.push_vec4(&tints, Use::Vertices));
+    }
+    let indices_of: Vec<usize> = vertices().map(|(_, v)| base(v)).collect();
+    if part.skin.is_some() {
+        let primitive = asset.document.root().entry("meshes", part.mesh)?.entry("primitives", part.primitive)?;
+        for (name, at) in primitive.need("attributes")?.members()? {
+            if name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_") {
+                attributes[name] = json!(copy_elements(document, &asset.document, &at, &indices_of)?);
+            }
+        }
+    }
+    let mut targets = Vec::new();
+    for morph in &part.stored.morphs {
+        let change = |list: &[Vec3], v: usize| list.get(v).copied().unwrap_or(Vec3::ZERO);
+        let mut target = json!({});
+        let moved: Vec<Vec3> = vertices()
+            .map(|(h, v)| {
+                let rest = part.stored.normals[base(v)].as_dvec3();
+                let morphed = (rest + change(&morph.normals, base(v)).as_dvec3()).try_normalize().unwrap_or(rest);
+                let offset = worn.offset[v].as_dvec3();
+                change(&morph.positions, base(v)) + h * (turn(rest, morphed) * offset - offset).as_vec3()
+            })
+            .collect();
+        target["POSITION"] = json!(document.push_positions(&moved, Use::Vertices));
+        if !morph.normals.is_empty() {
+            let turned: Vec<Vec3> = indices_of.iter().map(|&v| morph.normals[v]).collect();
+            target["NORMAL"] = json!(document.push_vec3(&turned, Use::Vertices));
+        }
+        targets.push(target);
+    }
+    let mirrored = part.mirrored();
+    let mut primitives = Vec::new();
+    for (shell, material) in materials.iter().enumerate() {
+        let corner = |v: u32| v + (shell * n) as u32;
+        let turned = |t: &[u32; 3]| if mirrored { [t[0], t[2], t[1]] } else { *t };
+        let indices: Vec<u32> = worn.triangles.iter().flat_map(turned).map(corner).collect();
+        let mut primitive = json!({
+            "attributes": attributes,
+            "indices": document.push_integers(&indices, 1, Use::Indices),
+            "material": material,
+        });
+        if !targets.is_empty() {
+            primitive["targets"] = json!(targets);
+        }
+        primitives.push(primitive);
+    }
+    Ok(primitives)
+}
+
+/// An accessor with the elements `of` another document's accessor, in their stored form.
+fn copy_elements(to: &mut Document, from: &Document, at: &At<'_>, of: &[usize]) -> Result<usize> {
+    let accessor = from.root().entry("accessors", at.size()?)?;
+    let layout = Layout::of(from, at.size()?)?;
+    let (bytes, element) = (layout.bytes(from), layout.element());
+    let picked: Vec<u8> = of.iter().flat_map(|&v| &bytes[v * element..(v + 1) * element]).copied().collect();
+    let kind = accessor.need("type")?.text()?;
+    let component = accessor.need("componentType")?.size()? as u32;
+    let index = to.push_accessor(&picked, kind, component, of.len(), Use::Vertices);
+    if layout.normalised {
+        to.json["accessors"][index]["normalized"] = json!(true);
+    }
+    Ok(index)
+}
+
+/// Shows the mesh `shells` wherever `node` shows its base: a child of it, or, under a skin (which overrides the node's
+/// own place), a root beside it.
+fn place(document: &mut Document, node: usize, shells: usize, name: &str) -> Result<()> {
+    let base = document.json["nodes"][node].clone();
+    let mut added = json!({"name": format!("{name} fur shells"), "mesh": shells});
+    for key in ["skin", "weights"] {
+        if let Some(value) = base.get(key) {
+            added[key] = value.clone();
+        }
+    }
+    let added_index = document.push("nodes", added);
+    if base.get("skin").is_some() {
+        for scene in scenes_with(document, node)? {
+            document.json["scenes"][scene]["nodes"].as_array_mut().map(|list| list.push(json!(added_index)));
+        }
+    } else if let Some(owner) = document.json["nodes"][node].as_object_mut() {
+        let children = owner.entry("children").or_insert_with(|| json!([]));
+        children.as_array_mut().map(|list| list.push(json!(added_index)));
+    }
+    // Weights are animated on the node, so the shells' node needs the same channels.
+    let animations = document.json.get_mut("animations").and_then(Value::as_array_mut);
+    for animation in animations.into_iter().flatten() {
+        let Some(channels) = animation["channels"].as_array_mut() else { continue };
+        let mut copies: Vec<Value> = channels.clone();
+        copies.retain(|c| c["target"]["node"].as_u64() == Some(node as u64) && c["target"]["path"] == "weights");
+        copies.iter_mut().for_each(|c| c["target"]["node"] = json!(added_index));
+        channels.extend(copies);
+    }
+    Ok(())
+}
+
+/// Scenes in whose trees `node` is.
+fn scenes_with(document: &Document, node: usize) -> Result<Vec<usize>> {
+    let root = document.root();
+    let nodes = root.list("nodes")?;
+    let mut found = Vec::new();
+    for (index, scene) in root.list("scenes")?.iter().enumerate() {
+        let mut reached: Vec<usize> = scene.list("nodes")?.iter().map(At::size).collect::<Result<_>>()?;
+        while let Some(here) = reached.pop() {
+            if here == node {
+                found.push(index);
+                break;
+            }
+            for child in nodes[here].list("children")? {
+                reached.push(child.size()?);
+            }
+        }
+    }
+    Ok(found)
+}

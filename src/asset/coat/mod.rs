@@ -1,0 +1,25 @@
+//! The extension `FURRIER_mesh_fur` (`docs/extension/`): a coat into a document, and back.
+
+mod fallback;
+mod flatten;
+mod read;
+mod textures;
+mod write;
+
+pub use fallback::Fallback;
+pub use read::read_coat;
+use write::set_extension;
+pub use write::{dress, write_coat};
+
+use super::json::At;
+use serde_json::json;
+
+/// Name of the extension.
+pub const NAME: &str = "FURRIER_mesh_fur";
+/// Version of the extension that is written, and the only one that is read.
+pub const VERSION: u64 = 1;
+
+/// Whether a mesh is the fallback of another's coat.
+pub(super) fn is_fallback(mesh: &At<'_>) -> bool {
+    mesh.get("extensions").and_then(|e| e.get(NAME)?.get("fallback")).is_some_and(|f| f.value == &json!(true))
+}

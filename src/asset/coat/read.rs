@@ -1,0 +1,80 @@
+//! A coat out of a file.
+
+use super::write::{check, part_of};
+use super::{NAME, VERSION, textures};
+use crate::asset::json::At;
+use crate::asset::{self, Asset};
+use crate::data::coat::{Coat, CoatPrimitive, FinEdge};
+use crate::error::{Error, Result};
+use crate::math::{Vec2, Vec3, Vec4};
+use std::path::Path;
+
+/// Reads a file that wears a coat.
+///
+/// # Errors
+/// When the file cannot be read, has no coat, or one that contradicts itself.
+pub fn read_coat(path: &Path) -> Result<(Asset, Coat)> {
+    let asset = asset::load(&path.to_string_lossy())?;
+    let coat = coat_of(&asset).map_err(|error| error.with_file(path))?;
+    Ok((asset, coat))
+}
+
+fn coat_of(asset: &Asset) -> Result<Coat> {
+    let document = &asset.document;
+    let root = document.root();
+    let Some(extension) = root.get("extensions").and_then(|e| e.get(NAME)) else {
+        return Err(Error::input("the file wears no coat")
+            .with_field(format!("extensions.{NAME}"))
+            .with_found("nothing")
+            .with_expected("a coat")
+            .with_hint("make one with `furrier bake`; tools that rewrite glTF may have dropped it"));
+    };
+    let version = extension.need("version")?;
+    if version.size()? as u64 != VERSION {
+        return Err(version.fault(&VERSION.to_string()).with_hint("bake the asset again with this version"));
+    }
+    let mut coat = Coat::default();
+    for tile in extension.list("tiles")? {
+        coat.tiles.push(textures::read(document, &tile)?);
+    }
+    for (mesh, mesh_at) in root.list("meshes")?.iter().enumerate() {
+        for (primitive, at) in mesh_at.list("primitives")?.iter().enumerate() {
+            let Some(wears) = at.get("extensions").and_then(|e| e.get(NAME)) else { continue };
+            let mut worn = CoatPrimitive { mesh, primitive, ..CoatPrimitive::default() };
+            // A coat on a mesh that the default scene does not show is nobody's.
+            let Ok(part) = part_of(asset, &worn) else { continue };
+            read_primitive(asset, &wears, &mut worn, part.mirrored())?;
+            check(&worn, part, coat.tiles.len())?;
+            coat.primitives.push(worn);
+        }
+    }
+    Ok(coat)
+}
+
+fn read_primitive(asset: &Asset, at: &At<'_>, worn: &mut CoatPrimitive, mirrored: bool) -> Result<()> {
+    let document = &asset.document;
+    let attributes = at.need("attributes")?;
+    let integers = |owner: &At<'_>, key: &str, width| document.integers(owner.need(key)?.size()?, width);
+    let floats = |owner: &At<'_>, key: &str, width| document.floats(owner.need(key)?.size()?, width);
+    worn.tile = at.need("tile")?.size()?;
+    worn.base_vertex = integers(&attributes, "BASE_VERTEX", 1)?;
+    worn.patch = integers(&attributes, "PATCH", 1)?;
+    worn.uv = floats(&attributes, "TEXCOORD_0", 2)?.chunks_exact(2).map(Vec2::from_slice).collect();
+    worn.offset = floats(&attributes, "OFFSET", 3)?.chunks_exact(3).map(Vec3::from_slice).collect();
+    worn.tint = floats(&attributes, "TINT", 4)?.chunks_exact(4).map(Vec4::from_slice).collect();
+    let indices = integers(at, "indices", 1)?;
+    worn.triangles = indices.as_chunks::<3>().0.to_vec();
+    if mirrored {
+        worn.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+    let Some(fins) = at.get("fins") else { return Ok(()) };
+    let (edges, strips) = (integers(&fins, "edges", 4)?, floats(&fins, "strips", 3)?);
+    if edges.len() / 4 != strips.len() / 3 {
+        return Err(fins.fault("as many strips as edges"));
+    }
+    for (e, s) in edges.chunks_exact(4).zip(strips.chunks_exact(3)) {
+        let opposite = if mirrored { [e[3], e[2]] } else { [e[2], e[3]] };
+        worn.fins.push(FinEdge { ends: [e[0], e[1]], opposite, u: [s[0], s[1]], thickness: s[2] });
+    }
+    Ok(())
+}

@@ -1,0 +1,107 @@
+//! Tiles as JSON and KTX2 buffer views, and back.
+
+use crate::asset::Document;
+use crate::asset::encode::numbers;
+use crate::asset::json::At;
+use crate::asset::ktx2::{self, Format};
+use crate::data::coat::{FinTexture, GAIN_ANGLES_DEG, ShellStack, Tile};
+use crate::data::image::Image8;
+use crate::error::Result;
+use crate::math::Vec2;
+use serde_json::{Value, json};
+
+/// Appends a tile's textures and gives its JSON.
+pub fn write(document: &mut Document, tile: &Tile) -> Result<Value> {
+    let (shells, fin) = (&tile.shells, &tile.fin);
+    let mut array = |images: &[Vec<Image8>], format| -> Result<usize> {
+        let levels: Vec<Vec<&Image8>> = images.iter().map(|level| level.iter().collect()).collect();
+        Ok(document.push_view(&ktx2::encode(&levels, format, true)?, None))
+    };
+    let (albedo, medium, ends) = (
+        array(&shells.albedo, Format::Rgba8Srgb)?,
+        array(&shells.medium, Format::Rgba8)?,
+        array(&shells.ends, Format::R8)?,
+    );
+    let mut single = |images: &[Image8], format| -> Result<usize> {
+        let levels: Vec<Vec<&Image8>> = images.iter().map(|image| vec![image]).collect();
+        Ok(document.push_view(&ktx2::encode(&levels, format, false)?, None))
+    };
+    let (fin_albedo, fin_tangent) = (single(&fin.albedo, Format::Rgba8Srgb)?, single(&fin.tangent, Format::Rgba8)?);
+    Ok(json!({
+        "preset": tile.preset,
+        "edge": f64::from(tile.edge_m),
+        "height": f64::from(tile.height_m),
+        "shells": {
+            "layers": shells.layers,
+            "size": shells.size,
+            "extinctionScale": f64::from(shells.extinction_scale_per_m),
+            "gainAngles": numbers(&GAIN_ANGLES_DEG),
+            "gains": shells.gains.iter().map(|g| numbers(g)).collect::<Vec<_>>(),
+            "slopes": shells.slopes.iter().map(|s| numbers(&s.to_array())).collect::<Vec<_>>(),
+            "albedo": albedo,
+            "medium": medium,
+            "ends": ends,
+        },
+        "fin": {
+            "size": fin.size,
+            "width": f64::from(fin.width_m),
+            "thickness": f64::from(fin.thickness_m),
+            "albedo": fin_albedo,
+            "tangent": fin_tangent,
+        },
+    }))
+}
+
+/// Reads a tile back.
+pub fn read(document: &Document, at: &At<'_>) -> Result<Tile> {
+    let (shells, fin) = (at.need("shells")?, at.need("fin")?);
+    let images = |owner: &At<'_>, key: &str, format| -> Result<Vec<Vec<Image8>>> {
+        let view = owner.need(key)?;
+        ktx2::decode(document.view(view.size()?)?, format).map_err(|e| e.with_field(view.path.clone()))
+    };
+    let array = |key: &str, format| -> Result<Vec<Vec<Image8>>> {
+        let found = images(&shells, key, format)?;
+        let (layers, size) = (shells.need("layers")?.size()?, shells.need("size")?.size()?);
+        let fits = found.first().is_some_and(|mip| mip.len() == layers && mip[0].width as usize == size);
+        if fits { Ok(found) } else { Err(shells.need(key)?.fault("a texture of the stated layers and size")) }
+    };
+    let single = |key: &str, format| -> Result<Vec<Image8>> {
+        Ok(images(&fin, key, format)?.into_iter().filter_map(|mut mip| mip.pop()).collect())
+    };
+    let float = |owner: &At<'_>, key: &str| owner.need(key)?.number().map(|n| n as f32);
+    let angles = shells.need("gainAngles")?;
+    if angles.numbers::<9>()?.iter().zip(GAIN_ANGLES_DEG).any(|(&a, b)| (a - f64::from(b)).abs() > 1e-6) {
+        return Err(angles.fault(&format!("{GAIN_ANGLES_DEG:?}")));
+    }
+    let gains = shells.list("gains")?;
+    let gains = gains.iter().map(|g| Ok(g.numbers::<9>()?.map(|n| n as f32))).collect::<Result<Vec<_>>>()?;
+    let slopes = shells.list("slopes")?;
+    let slopes = slopes.iter().map(|s| s.numbers::<2>().map(|n| Vec2::new(n[0] as f32, n[1] as f32)));
+    let albedo = array("albedo", Format::Rgba8Srgb)?;
+    let slopes = slopes.collect::<Result<Vec<_>>>()?;
+    if gains.len() != albedo.len() || slopes.len() != albedo[0].len() || albedo[0].len() < 2 {
+        return Err(shells.need("gains")?.fault("one row per mip, one slope per layer, and at least 2 layers"));
+    }
+    Ok(Tile {
+        preset: at.need("preset")?.text()?.to_owned(),
+        edge_m: float(at, "edge")?,
+        height_m: float(at, "height")?,
+        shells: ShellStack {
+            layers: albedo[0].len() as u32,
+            size: albedo[0][0].width,
+            gains,
+            slopes,
+            extinction_scale_per_m: float(&shells, "extinctionScale")?,
+            medium: array("medium", Format::Rgba8)?,
+            ends: array("ends", Format::R8)?,
+            albedo,
+        },
+        fin: FinTexture {
+            size: fin.need("size")?.numbers::<2>()?.map(|n| n as u32),
+            width_m: float(&fin, "width")?,
+            thickness_m: float(&fin, "thickness")?,
+            albedo: single("albedo", Format::Rgba8Srgb)?,
+            tangent: single("tangent", Format::Rgba8)?,
+        },
+    })
+}

@@ -1,0 +1,234 @@
+//! A coat into a document, and the document into files.
+
+use super::fallback::{self, Fallback};
+use super::{NAME, VERSION, textures};
+use crate::asset::document::Document;
+use crate::asset::encode::{Use, numbers};
+use crate::asset::image::media_type;
+use crate::asset::{Asset, Part, glb, write};
+use crate::data::coat::{Coat, CoatPrimitive};
+use crate::error::{Error, Kind, Result};
+use serde_json::{Map, Value, json};
+use std::path::{Path, PathBuf};
+
+/// Writes the asset with its coat to `out`, a `.glb`, or a `.gltf` with a `.bin` beside it. Gives what the user should
+/// know: images that were taken along, or that were not there.
+///
+/// # Errors
+/// When the coat does not fit the asset, or the output cannot be written; then no output is left behind.
+pub fn write_coat(asset: &Asset, coat: &Coat, fallback: Fallback, out: &Path) -> Result<Vec<String>> {
+    let extension = out.extension().map(|e| e.to_string_lossy().to_lowercase());
+    let text = match extension.as_deref() {
+        Some("glb") => false,
+        Some("gltf") => true,
+        _ => {
+            return Err(Error::usage("the output must be glTF")
+                .with_file(out)
+                .with_found(extension.unwrap_or_else(|| "no extension".into()))
+                .with_expected(".glb or .gltf"));
+        }
+    };
+    write::check_target(out, &asset.document.files)?;
+    let mut document = dress(asset, coat, fallback)?;
+    let beside = text && same_folder(out, asset.document.folder.as_deref());
+    let notes = if beside { Vec::new() } else { take_images_along(&mut document)? };
+    if !text {
+        let bytes = glb::assemble(&to_text(&document.json)?, &document.binary)?;
+        write::whole(out, &bytes, &asset.document.files)?;
+        return Ok(notes);
+    }
+    let binary = out.with_extension("bin");
+    let name = binary.file_name().unwrap_or_default().to_string_lossy();
+    document.json["buffers"][0]["uri"] = json!(percent_encoding::utf8_percent_encode(&name, UNSAFE).to_string());
+    let json = to_text(&document.json)?;
+    write::all(&[(binary, &document.binary), (out.to_owned(), &json)], &asset.document.files)?;
+    Ok(notes)
+}
+
+/// What a URI may not hold as it is.
+const UNSAFE: &percent_encoding::AsciiSet = &percent_encoding::CONTROLS
+    .add(b' ')
+    .add(b'"')
+    .add(b'#')
+    .add(b'%')
+    .add(b'<')
+    .add(b'>')
+    .add(b'?')
+    .add(b'\\')
+    .add(b':');
+
+fn to_text(json: &Value) -> Result<Vec<u8>> {
+    serde_json::to_vec(json).map_err(|error| Error::new(Kind::Output, format!("the JSON cannot be written: {error}")))
+}
+
+fn same_folder(out: &Path, folder: Option<&Path>) -> bool {
+    let parent = out.parent().map(|p| if p.as_os_str().is_empty() { PathBuf::from(".") } else { p.to_owned() });
+    let (Some(parent), Some(folder)) = (parent, folder) else { return false };
+    parent.canonicalize().ok().is_some_and(|parent| folder.canonicalize().ok() == Some(parent))
+}
+
+/// Copies images that lie in files into the buffer, because the output may stand elsewhere.
+fn take_images_along(document: &mut Document) -> Result<Vec<String>> {
+    let mut notes = Vec::new();
+    for index in 0..document.count("images") {
+        let uri = document.json["images"][index]["uri"].as_str().map(str::to_owned);
+        let Some(uri) = uri.filter(|uri| !uri.starts_with("data:")) else { continue };
+        let Some(bytes) = document.image_bytes(index)? else {
+            notes.push(format!("images[{index}] ({uri}) is not there; the output still names it"));
+            continue;
+        };
+        let Some(media) = media_type(&bytes) else {
+            notes.push(format!("images[{index}] ({uri}) is of an unknown kind; the output still names it"));
+            continue;
+        };
+        let view = document.push_view(&bytes, None);
+        if let Some(image) = document.json["images"][index].as_object_mut() {
+            image.shift_remove("uri");
+            image.insert("mimeType".into(), json!(media));
+            image.insert("bufferView".into(), json!(view));
+            // Lets tools that unpack the file give the image its name back.
+            image.entry("name").or_insert(json!(uri));
+        }
+        notes.push(format!("image {uri} was copied into the output"));
+    }
+    Ok(notes)
+}
+
+/// The asset's document with the coat added: all that is new stands behind what was there.
+///
+/// # Errors
+/// When the asset has a coat already, or the coat does not fit it.
+pub fn dress(asset: &Asset, coat: &Coat, fallback: Fallback) -> Result<Document> {
+    let mut document = asset.document.clone();
+    if document.root().get("extensions").is_some_and(|e| e.get(NAME).is_some()) {
+        return Err(Error::input("the input wears a coat already")
+            .with_file(&document.name)
+            .with_field(format!("extensions.{NAME}"))
+            .with_found("a coat")
+            .with_expected("an asset without one")
+            .with_hint("bake from the file that this one was made from"));
+    }
+    let mut tiles = Vec::new();
+    for tile in &coat.tiles {
+        tiles.push(textures::write(&mut document, tile)?);
+    }
+    let mut mirror = Vec::new();
+    for primitive in &coat.primitives {
+        let part = part_of(asset, primitive)?;
+        check(primitive, part, coat.tiles.len())?;
+        let value = write_primitive(&mut document, primitive, part.mirrored());
+        let owner = &mut document.json["meshes"][primitive.mesh]["primitives"][primitive.primitive];
+        set_extension(owner, value);
+        mirror.push(json!({"mesh": primitive.mesh, "primitive": primitive.primitive, "tile": primitive.tile}));
+    }
+    // Tools that drop unknown extensions keep extras: enough to find out what was baked.
+    let essentials: Vec<Value> = coat
+        .tiles
+        .iter()
+        .map(|tile| {
+            let edges = numbers(&[tile.edge_m, tile.height_m]);
+            json!({"preset": tile.preset, "edge": edges[0], "height": edges[1], "layers": tile.shells.layers})
+        })
+        .collect();
+    set_extension(&mut document.json, json!({"version": VERSION, "tiles": tiles}));
+    let extras = json!({"version": VERSION, "tiles": essentials, "primitives": mirror});
+    if let Some(root) = document.json.as_object_mut() {
+        let used = root.entry("extensionsUsed").or_insert_with(|| json!([]));
+        if let Some(used) = used.as_array_mut() {
+            used.push(json!(NAME));
+        }
+        // Extras may be anything; what is not an object is left alone.
+        if let Some(object) = root.entry("extras").or_insert_with(|| json!({})).as_object_mut() {
+            object.insert(NAME.into(), extras);
+        }
+    }
+    if let Fallback::Shells(count) = fallback {
+        fallback::add(&mut document, asset, coat, count)?;
+    }
+    Ok(document)
+}
+
+/// The part that a coat primitive belongs to.
+pub(super) fn part_of<'a>(asset: &'a Asset, primitive: &CoatPrimitive) -> Result<&'a Part> {
+    let found = asset.parts.iter().find(|p| p.mesh == primitive.mesh && p.primitive == primitive.primitive);
+    found.ok_or_else(|| {
+        Error::input("a coat primitive belongs to no part of the asset")
+            .with_field("coat.primitives")
+            .with_found(format!("mesh {}, primitive {}", primitive.mesh, primitive.primitive))
+            .with_expected("a triangle primitive of the default scene")
+    })
+}
+
+/// Checks that every index of a coat primitive points somewhere and every number is finite.
+pub(super) fn check(primitive: &CoatPrimitive, part: &Part, tiles: usize) -> Result<()> {
+    let n = primitive.base_vertex.len();
+    let fault = |field: &str, expected: &str| {
+        Err(Error::input("the coat is not consistent")
+            .with_field(format!("coat of meshes[{}].primitives[{}]: {field}", primitive.mesh, primitive.primitive))
+            .with_found("something else")
+            .with_expected(expected))
+    };
+    let lengths = [primitive.uv.len(), primitive.patch.len(), primitive.offset.len(), primitive.tint.len()];
+    if lengths.iter().any(|&length| length != n) || n == 0 {
+        return fault("attributes", "one entry per coat vertex, and at least one");
+    }
+    if primitive.tile >= tiles {
+        return fault("tile", "a tile of the coat");
+    }
+    if primitive.base_vertex.iter().any(|&v| v as usize >= part.vertices()) {
+        return fault("BASE_VERTEX", "vertices of the base primitive");
+    }
+    let inside = |v: &u32| (*v as usize) < n;
+    if !primitive.triangles.iter().flatten().all(inside) {
+        return fault("indices", "coat vertices");
+    }
+    if !primitive.fins.iter().all(|fin| fin.ends.iter().chain(&fin.opposite).all(inside)) {
+        return fault("fins.edges", "coat vertices");
+    }
+    let finite = primitive.uv.iter().all(|uv| uv.is_finite())
+        && primitive.offset.iter().all(|o| o.is_finite())
+        && primitive.tint.iter().all(|t| t.is_finite())
+        && primitive.fins.iter().all(|f| f.u.iter().chain([&f.thickness]).all(|u| u.is_finite()));
+    if finite { Ok(()) } else { fault("attributes", "finite numbers") }
+}
+
+/// Windings are written as the primitive's own space has them, which a mirroring node turns round again.
+fn write_primitive(document: &mut Document, primitive: &CoatPrimitive, mirrored: bool) -> Value {
+    let turned = |t: [u32; 3]| if mirrored { [t[0], t[2], t[1]] } else { t };
+    let indices: Vec<u32> = primitive.triangles.iter().flat_map(|&t| turned(t)).collect();
+    let mut value = json!({
+        "tile": primitive.tile,
+        "indices": document.push_integers(&indices, 1, Use::Other),
+        "attributes": {
+            "BASE_VERTEX": document.push_integers(&primitive.base_vertex, 1, Use::Other),
+            "TEXCOORD_0": document.push_vec2(&primitive.uv, Use::Other),
+            "PATCH": document.push_integers(&primitive.patch, 1, Use::Other),
+            "OFFSET": document.push_vec3(&primitive.offset, Use::Other),
+            "TINT": document.push_vec4(&primitive.tint, Use::Other),
+        },
+    });
+    if !primitive.fins.is_empty() {
+        let edge = |fin: &crate::data::coat::FinEdge| {
+            let [left, right] = fin.opposite;
+            let opposite = if mirrored { [right, left] } else { [left, right] };
+            [fin.ends[0], fin.ends[1], opposite[0], opposite[1]]
+        };
+        let edges: Vec<u32> = primitive.fins.iter().flat_map(edge).collect();
+        let strips: Vec<f32> = primitive.fins.iter().flat_map(|fin| [fin.u[0], fin.u[1], fin.thickness]).collect();
+        value["fins"] = json!({
+            "edges": document.push_integers(&edges, 4, Use::Other),
+            "strips": document.push_floats(&strips, 3, Use::Other),
+        });
+    }
+    value
+}
+
+/// Sets our extension on a JSON object.
+pub(super) fn set_extension(owner: &mut Value, value: Value) {
+    if let Some(object) = owner.as_object_mut() {
+        let extensions = object.entry("extensions").or_insert_with(|| Value::Object(Map::new()));
+        if let Some(extensions) = extensions.as_object_mut() {
+            extensions.insert(NAME.into(), value);
+        }
+    }
+}
