@@ -3,6 +3,7 @@
 //! The folders are the pipeline, read top to bottom in `docs/architecture.md`; a file imports only from lower floors.
 
 pub mod asset;
+pub mod bake;
 pub mod cli;
 pub mod coat;
 pub mod data;

@@ -6,6 +6,7 @@ use crate::data::image::Image8;
 use crate::error::{Error, Result};
 use image::{ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
+use std::path::Path;
 
 /// Longest side that is decoded, pixels.
 pub const MAX_SIDE: u32 = 16_384;
@@ -70,14 +71,7 @@ impl Document {
         else {
             return Ok(None);
         };
-        let mut reader = ImageReader::with_format(Cursor::new(&bytes), format);
-        let mut limits = Limits::default();
-        limits.max_image_width = Some(MAX_SIDE);
-        limits.max_image_height = Some(MAX_SIDE);
-        limits.max_alloc = Some(MAX_PIXELS * 8);
-        reader.limits(limits);
-        let image = reader.decode().map_err(|error| self.broken_image(index, &error))?.into_rgba8();
-        Ok(Some(Image8 { width: image.width(), height: image.height(), channels: 4, pixels: image.into_raw() }))
+        decode(&bytes, format).map(Some).map_err(|error| self.broken_image(index, &error))
     }
 
     fn broken_image(&self, index: usize, error: &image::ImageError) -> Error {
@@ -87,6 +81,33 @@ impl Document {
             .with_expected("a whole PNG, JPEG or WebP")
             .with_hint("save the image again")
     }
+}
+
+/// Decodes a PNG, JPEG or WebP file as RGBA.
+///
+/// # Errors
+/// When it cannot be read, is of another kind, broken or too large.
+pub fn load(path: &Path) -> Result<Image8> {
+    let bytes = uri::read_file(path)?;
+    let broken = |found: String| {
+        Error::input("an image cannot be decoded")
+            .with_file(path)
+            .with_found(found)
+            .with_expected("a whole PNG, JPEG or WebP of a moderate size")
+    };
+    let format = format(&bytes).ok_or_else(|| broken("another kind of file".into()))?;
+    decode(&bytes, format).map_err(|error| broken(error.to_string()))
+}
+
+fn decode(bytes: &[u8], format: ImageFormat) -> image::ImageResult<Image8> {
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_SIDE);
+    limits.max_image_height = Some(MAX_SIDE);
+    limits.max_alloc = Some(MAX_PIXELS * 8);
+    reader.limits(limits);
+    let image = reader.decode()?.into_rgba8();
+    Ok(Image8 { width: image.width(), height: image.height(), channels: 4, pixels: image.into_raw() })
 }
 
 fn format(bytes: &[u8]) -> Option<ImageFormat> {

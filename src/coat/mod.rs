@@ -4,3 +4,4 @@ pub mod fins;
 pub mod judge;
 pub mod shells;
 pub mod tile;
+pub mod wear;

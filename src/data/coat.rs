@@ -9,6 +9,8 @@ pub const GAIN_ANGLES_DEG: [f32; 9] = [0.0, 10.0, 22.0, 35.0, 48.0, 60.0, 70.0, 
 /// A furry asset's coat.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Coat {
+    /// How long a unit of the file is, m: hair is as thick as its tile says on an asset of that size.
+    pub metres_per_unit: f64,
     /// Hair textures, shared by primitives.
     pub tiles: Vec<Tile>,
     /// One per furred primitive of the asset.

@@ -33,7 +33,12 @@ fn coat_of(asset: &Asset) -> Result<Coat> {
     if version.size()? as u64 != VERSION {
         return Err(version.fault(&VERSION.to_string()).with_hint("bake the asset again with this version"));
     }
-    let mut coat = Coat::default();
+    let metres = extension.need("metresPerUnit")?;
+    let metres_per_unit = metres.number()?;
+    if !(metres_per_unit.is_finite() && metres_per_unit > 0.0) {
+        return Err(metres.fault("a positive number of metres"));
+    }
+    let mut coat = Coat { metres_per_unit, ..Coat::default() };
     for tile in extension.list("tiles")? {
         coat.tiles.push(textures::read(document, &tile)?);
     }

@@ -130,8 +130,12 @@ pub fn dress(asset: &Asset, coat: &Coat, fallback: Fallback) -> Result<Document>
             json!({"preset": tile.preset, "edge": edges[0], "height": edges[1], "layers": tile.shells.layers})
         })
         .collect();
-    set_extension(&mut document.json, json!({"version": VERSION, "tiles": tiles}));
-    let extras = json!({"version": VERSION, "tiles": essentials, "primitives": mirror});
+    set_extension(
+        &mut document.json,
+        json!({"version": VERSION, "metresPerUnit": coat.metres_per_unit, "tiles": tiles}),
+    );
+    let extras =
+        json!({"version": VERSION, "metresPerUnit": coat.metres_per_unit, "tiles": essentials, "primitives": mirror});
     if let Some(root) = document.json.as_object_mut() {
         let used = root.entry("extensionsUsed").or_insert_with(|| json!([]));
         if let Some(used) = used.as_array_mut() {

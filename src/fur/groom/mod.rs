@@ -2,7 +2,9 @@
 
 pub mod clump;
 pub mod fibre;
+pub mod fields;
 pub mod hair;
+pub mod maps;
 
 use crate::math::Vec3;
 use schemars::JsonSchema;

@@ -1,0 +1,87 @@
+//! One part made ready to wear fur: its mesh in metres and the fields on it.
+
+use crate::asset::material::BaseColour;
+use crate::asset::{Asset, Part, image};
+use crate::data::fields::Fields;
+use crate::data::mesh::Mesh;
+use crate::error::Result;
+use crate::fur::field::{FieldSource, directions};
+use crate::fur::groom::maps::{Maps, comb_directions};
+use crate::fur::groom::{Comb, fields};
+use crate::math::{Vec3, Vec4};
+use crate::preset::{self, Preset};
+
+/// Mesh, fields, and what to tell the user of them.
+pub struct Groomed {
+    /// The skin.
+    pub mesh: Mesh,
+    /// The fields on it.
+    pub fields: Fields,
+    /// One sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Gathers everything that decides how hair lies on `part`.
+pub fn groom(asset: &Asset, part: &Part, preset: &Preset, metres_per_unit: f64) -> Result<Groomed> {
+    let mesh = part.mesh(metres_per_unit)?;
+    let maps = decode(&preset.maps)?;
+    let mut notes = Vec::new();
+    if !maps.is_empty() && mesh.uv_sets.is_empty() {
+        notes.push(format!("material {:?} has no texture coordinates: groom maps are left out", part.material_name));
+    }
+    let comb = comb(&mesh, preset, &maps)?;
+    let tint = tint(asset, part, &mesh, preset)?;
+    Ok(Groomed { fields: fields::gather(&mesh, &preset.groom, &maps, comb, tint), mesh, notes })
+}
+
+fn decode(maps: &preset::Maps) -> Result<Maps> {
+    let load = |path: &Option<std::path::PathBuf>| path.as_deref().map(image::load).transpose();
+    Ok(Maps {
+        density: load(&maps.density)?,
+        length: load(&maps.length)?,
+        comb: load(&maps.comb)?,
+        colour: load(&maps.colour)?,
+        clump: load(&maps.clump)?,
+    })
+}
+
+/// The comb direction per vertex: painted map, then vertex attribute, then the preset's.
+fn comb(mesh: &Mesh, preset: &Preset, maps: &Maps) -> Result<Vec<Vec3>> {
+    let mut sources = Vec::new();
+    if let (Some(map), Some(uv)) = (&maps.comb, mesh.uv_sets.first()) {
+        sources.push(FieldSource::Vertices(comb_directions(mesh, uv, map)));
+    }
+    if let Some(attribute) = &mesh.fur_direction {
+        sources.push(FieldSource::Vertices(attribute.clone()));
+    }
+    match preset.groom.comb {
+        Comb::Upright if sources.is_empty() => return Ok(vec![Vec3::ZERO; mesh.positions_m.len()]),
+        Comb::Upright => {}
+        Comb::Gravity => sources.push(FieldSource::Gravity),
+        Comb::Tailward => sources.push(FieldSource::Tailward { sag: 0.3 }),
+    }
+    Ok(directions(mesh, &sources)?.direction)
+}
+
+/// Hair colour per vertex: base-colour texture, factor and vertex colours; the preset's tint where the asset has none.
+fn tint(asset: &Asset, part: &Part, mesh: &Mesh, preset: &Preset) -> Result<Vec<Vec3>> {
+    let count = mesh.positions_m.len();
+    let BaseColour { factor, texture } = &part.base_colour;
+    let image = match texture {
+        Some(texture) => asset.document.decode_image(texture.image)?.map(|image| (texture, image)),
+        None => None,
+    };
+    if image.is_none() && mesh.colour.is_none() && factor.truncate() == Vec3::ONE {
+        return Ok(vec![Vec3::from(preset.colour.tint); count]);
+    }
+    let vertex_colour = |v: usize| mesh.colour.as_ref().map_or(Vec4::ONE, |colour| colour[v]);
+    let texel = |v: usize| match &image {
+        Some((texture, image)) => match mesh.uv_sets.get(texture.uv_set) {
+            Some(uv) => texture.sample(image, uv[v]),
+            None => Vec4::ONE,
+        },
+        None => Vec4::ONE,
+    };
+    let colour = |v: usize| (*factor * vertex_colour(v) * texel(v)).truncate().clamp(Vec3::ZERO, Vec3::ONE);
+    Ok((0..count).map(colour).collect())
+}

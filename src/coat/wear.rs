@@ -1,0 +1,47 @@
+//! A tile on a skin: the coat primitive.
+
+use super::fins::edges::{Surface, edges};
+use crate::data::coat::{CoatPrimitive, Tile};
+use crate::data::fields::Fields;
+use crate::data::mesh::Mesh;
+use crate::data::patches::Patches;
+use crate::math::Vec3;
+
+/// Shortest hair over the stack's height: below it a shell would lie in the skin and fight it for depth.
+const SHORTEST: f32 = 1e-3;
+
+/// What a primitive wears, from its mesh, its fields and its patches. `local_offset` takes a skin vertex and a world
+/// offset in metres to the base primitive's own space.
+pub fn wear(
+    mesh: &Mesh,
+    fields: &Fields,
+    patches: &Patches,
+    tile: &Tile,
+    seed: u64,
+    local_offset: impl Fn(usize, Vec3) -> Vec3,
+) -> CoatPrimitive {
+    let of = |v: &u32| *v as usize;
+    let positions_m: Vec<Vec3> = patches.base_vertex.iter().map(|v| mesh.positions_m[of(v)]).collect();
+    let position_class: Vec<u32> = patches.base_vertex.iter().map(|v| mesh.position_class[of(v)]).collect();
+    let furred = |triangle: &&[u32; 3]| {
+        triangle.iter().any(|&v| {
+            let base = of(&patches.base_vertex[v as usize]);
+            fields.length[base] > SHORTEST && fields.density[base] > 0.0
+        })
+    };
+    let triangles: Vec<[u32; 3]> = patches.triangles.iter().filter(furred).copied().collect();
+    let surface = Surface { positions_m: &positions_m, position_class: &position_class, triangles: &triangles };
+    let offset = |v: usize| fields.lean[v] * (tile.height_m * fields.length[v].max(SHORTEST));
+    CoatPrimitive {
+        tile: 0,
+        mesh: 0,
+        primitive: 0,
+        fins: edges(&surface, &tile.fin, seed),
+        offset: patches.base_vertex.iter().map(|v| local_offset(of(v), offset(of(v)))).collect(),
+        tint: patches.base_vertex.iter().map(|v| fields.tint[of(v)].extend(fields.density[of(v)])).collect(),
+        base_vertex: patches.base_vertex.clone(),
+        uv: patches.uv.clone(),
+        patch: patches.patch.clone(),
+        triangles,
+    }
+}

@@ -1,0 +1,54 @@
+//! A coat's fields over a mesh: preset, vertex attributes and maps into one value per vertex.
+
+use super::Groom;
+use super::maps::{Maps, sample, sample_colour};
+use crate::data::fields::Fields;
+use crate::data::mesh::Mesh;
+use crate::math::{Vec2, Vec3};
+
+/// Least angle between hair and skin, as its sine: a shell whose offset lies in the skin would have no height.
+const LEAST_RISE: f32 = 0.17;
+
+/// Gathers the fields.
+///
+/// `comb` is a unit tangent per vertex, zero where the hair stands upright; `tint` the colour under each vertex. Maps are
+/// sampled at the mesh's first UV set and left out where it has none.
+pub fn gather(mesh: &Mesh, groom: &Groom, maps: &Maps, comb: Vec<Vec3>, tint: Vec<Vec3>) -> Fields {
+    let count = mesh.positions_m.len();
+    let normals = mesh.smooth_normals();
+    let at = |v: usize| mesh.uv_sets.first().map_or(Vec2::ZERO, |uv| uv[v]);
+    let has_uv = !mesh.uv_sets.is_empty();
+    let grey = |map: &Option<crate::data::image::Image8>, v: usize| match map {
+        Some(image) if has_uv => sample(image, at(v)).x,
+        _ => 1.0,
+    };
+    let comb_length = |v: usize| match &maps.comb {
+        Some(image) if has_uv => sample(image, at(v)).w,
+        _ => 1.0,
+    };
+    let attribute = |v: usize| mesh.fur_length.as_ref().map_or(1.0, |length| length[v].max(0.0));
+    Fields {
+        length: (0..count).map(|v| attribute(v) * grey(&maps.length, v) * comb_length(v)).collect(),
+        density: (0..count).map(|v| grey(&maps.density, v)).collect(),
+        clump: (0..count).map(|v| grey(&maps.clump, v)).collect(),
+        lean: (0..count).map(|v| lean(groom, normals[v], comb[v])).collect(),
+        direction: comb,
+        tint: match &maps.colour {
+            Some(image) if has_uv => (0..count).map(|v| sample_colour(image, at(v))).collect(),
+            _ => tint,
+        },
+    }
+}
+
+/// Root to tip of the mean hair, unit: leaned along the comb, pulled to the ground, never into the skin.
+fn lean(groom: &Groom, normal: Vec3, comb: Vec3) -> Vec3 {
+    let (sin, cos) = libm::sincosf(groom.lean_deg.to_radians());
+    let combed = if comb == Vec3::ZERO { normal } else { normal * cos + comb * sin };
+    let pulled = (combed + Vec3::NEG_Y * groom.gravity).normalize_or(normal);
+    let rise = pulled.dot(normal);
+    if rise >= LEAST_RISE {
+        return pulled;
+    }
+    let flat = (pulled - normal * rise).normalize_or_zero();
+    flat * (1.0 - LEAST_RISE * LEAST_RISE).sqrt() + normal * LEAST_RISE
+}
