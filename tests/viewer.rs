@@ -8,7 +8,7 @@ use furrier::viewer::{self, Options};
 
 /// `tile` worn on every part of `asset` that is not bare, hair along the normals, one fin on each triangle's first edge.
 pub fn dressed(asset: &Asset, tile: furrier::data::coat::Tile, metres_per_unit: f64) -> Coat {
-    let mut coat = Coat::default();
+    let mut coat = Coat { metres_per_unit, ..Coat::default() };
     for part in asset.parts.iter().filter(|part| !asset::is_bare(&part.material_name)) {
         let mesh = part.mesh(metres_per_unit).unwrap();
         let count = mesh.positions_m.len();
@@ -60,7 +60,7 @@ fn samples() {
         let asset = asset::load(&format!("sample:{name}")).unwrap();
         let coat = dressed(&asset, coats::tile(&coats::fox(), 0.008, 16, 128, 1), 1.0);
         let options = Options { size: [640, 480], ..Options::default() };
-        let shot = viewer::screenshot(&asset, &coat, 1.0, &options).unwrap();
+        let shot = viewer::screenshot(&asset, &coat, &options).unwrap();
         println!("{name}: {}", serde_json::to_string(&shot.report).unwrap());
         save(&shot.image, name);
     }

@@ -92,13 +92,13 @@ pub fn parse_show(text: &str) -> Result<Show> {
     Ok(show)
 }
 
-/// One picture of `asset` wearing `coat`; a file unit is `metres_per_unit` long.
+/// One picture of `asset` wearing `coat`.
 ///
 /// # Errors
 /// [`crate::error::Kind::Device`] without an adapter, naming the package that brings one; [`crate::error::Kind::Usage`] for an
 /// unknown animation or a size that does not fit; [`crate::error::Kind::Input`] for broken textures.
-pub fn screenshot(asset: &Asset, coat: &Coat, metres_per_unit: f64, options: &Options) -> Result<Shot> {
-    let mut shots = shoot(asset, coat, metres_per_unit, options, &[options.framing])?;
+pub fn screenshot(asset: &Asset, coat: &Coat, options: &Options) -> Result<Shot> {
+    let mut shots = shoot(asset, coat, options, &[options.framing])?;
     let picture = shots.pictures.remove(0);
     let image = shots.recorder.step("develop", || develop::develop(&picture, options.background), bytes_of);
     Ok(Shot { picture, image, report: shots.recorder.finish() })
@@ -108,7 +108,7 @@ pub fn screenshot(asset: &Asset, coat: &Coat, metres_per_unit: f64, options: &Op
 ///
 /// # Errors
 /// As [`screenshot`]; [`crate::error::Kind::Usage`] for a number of views out of range, or a camera file, which cannot turn.
-pub fn turntable(asset: &Asset, coat: &Coat, metres_per_unit: f64, options: &Options, views: u32) -> Result<Shot> {
+pub fn turntable(asset: &Asset, coat: &Coat, options: &Options, views: u32) -> Result<Shot> {
     if !(1..=64).contains(&views) {
         return Err(Error::usage("the number of views is out of range")
             .with_field("--turntable")
@@ -123,7 +123,7 @@ pub fn turntable(asset: &Asset, coat: &Coat, metres_per_unit: f64, options: &Opt
     };
     let turned = |i| Orbit { azimuth_deg: orbit.azimuth_deg + 360.0 * f64::from(i) / f64::from(views), ..orbit };
     let framings: Vec<_> = (0..views).map(|i| Framing::Orbit(turned(i))).collect();
-    let mut shots = shoot(asset, coat, metres_per_unit, options, &framings)?;
+    let mut shots = shoot(asset, coat, options, &framings)?;
     let columns = f64::from(views).sqrt().ceil() as u32;
     let picture = sheet(&shots.pictures, columns);
     let image = shots.recorder.step("develop", || develop::develop(&picture, options.background), bytes_of);
@@ -139,7 +139,7 @@ struct Shots {
     recorder: Recorder,
 }
 
-fn shoot(asset: &Asset, coat: &Coat, metres_per_unit: f64, options: &Options, framings: &[Framing]) -> Result<Shots> {
+fn shoot(asset: &Asset, coat: &Coat, options: &Options, framings: &[Framing]) -> Result<Shots> {
     let mut recorder = Recorder::new("");
     let gpu = recorder.step("open device", || Gpu::open(&options.device), |_| 0)?;
     recorder.device(gpu.adapter.to_string());
@@ -152,8 +152,8 @@ fn shoot(asset: &Asset, coat: &Coat, metres_per_unit: f64, options: &Options, fr
         || stage::textures(asset),
         |decoded| decoded.as_ref().map_or(0, |all| all.values().map(bytes_of).sum()),
     )?;
-    let scene = recorder.step("pose", || stage::scene(asset, coat, &textures, &pose, metres_per_unit), |_| 0);
-    let origin_m = asset.parts.first().map_or(DVec3::ZERO, |part| part.centre_units * metres_per_unit);
+    let scene = recorder.step("pose", || stage::scene(asset, coat, &textures, &pose), |_| 0);
+    let origin_m = asset.parts.first().map_or(DVec3::ZERO, |part| part.centre_units * coat.metres_per_unit);
     let points_m = stage::points_m(&scene);
     let renderer = recorder.step(
         "upload tiles",

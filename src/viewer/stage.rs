@@ -29,20 +29,14 @@ pub fn textures(asset: &Asset) -> Result<Textures> {
     Ok(decoded)
 }
 
-/// Everything that `asset` shows in `pose`, one file unit being `metres_per_unit` long.
-pub fn scene<'a>(
-    asset: &'a Asset,
-    coat: &'a Coat,
-    textures: &'a Textures,
-    pose: &Pose,
-    metres_per_unit: f64,
-) -> Scene<'a> {
+/// Everything that `asset` shows in `pose`.
+pub fn scene<'a>(asset: &'a Asset, coat: &'a Coat, textures: &'a Textures, pose: &Pose) -> Scene<'a> {
     let mut scene = Scene { tiles: &coat.tiles, ..Default::default() };
     for part in &asset.parts {
         let worn: Vec<_> =
             coat.primitives.iter().filter(|worn| (worn.mesh, worn.primitive) == (part.mesh, part.primitive)).collect();
         for &node in &part.nodes {
-            let posed = part.posed(asset, pose, node, metres_per_unit);
+            let posed = part.posed(asset, pose, node, coat.metres_per_unit);
             for worn in &worn {
                 scene.skins.push(furred_skin(part, &posed, worn, textures));
                 scene.furs.push(fur(&posed, worn));
