@@ -11,9 +11,11 @@ pub mod error;
 pub mod fur;
 pub mod gpu;
 pub mod math;
+pub mod metrics;
 pub mod preset;
 pub mod render;
 pub mod runtime;
 pub mod shade;
+pub mod viewer;
 
 pub use error::{Error, Result};

@@ -6,6 +6,7 @@ use furrier::gpu::{Choice, Gpu};
 use furrier::math::{DVec3, Vec3, Vec4};
 use furrier::runtime::gpu::Renderer;
 use furrier::runtime::{Picture, Show, View};
+use furrier::shade::light::Directional;
 
 pub fn save(picture: &Picture, name: &str) {
     let Ok(folder) = std::env::var("FURRIER_PICTURES") else { return };
@@ -39,8 +40,7 @@ fn look(eye: Vec3, target: Vec3, vfov_deg: f64, size: [u32; 2]) -> View {
         clip_from_world: clip,
         eye: Vec4::from((eye, 1.0)),
         size,
-        samples: 1,
-        lights: vec![(Vec3::new(-0.5, 0.7, 0.6).normalize(), Vec3::splat(3.0))],
+        lights: vec![Directional { to_light: Vec3::new(-0.5, 0.7, 0.6).normalize(), irradiance: Vec3::splat(3.0) }],
         ambient: Vec3::splat(0.5),
     }
 }

@@ -57,7 +57,6 @@ fn view() -> View {
         clip_from_world: camera.clip_from_world(furrier::math::DVec3::ZERO, 1.0, 0.05, 1.0).as_mat4(),
         eye: Vec4::from((EYE, 1.0)),
         size: [PIXELS as u32; 2],
-        samples: 3,
         lights: vec![],
         ambient: Vec3::ONE,
     }

@@ -25,7 +25,6 @@ fn oblique(direction: Vec3, edge_m: f32) -> View {
         clip_from_world: clip,
         eye: Vec4::from((-direction, 0.0)),
         size: [PIXELS; 2],
-        samples: 1,
         lights: vec![],
         ambient: Vec3::ZERO,
     }

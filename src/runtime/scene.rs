@@ -1,8 +1,10 @@
 //! What to draw and from where: posed, in metres, world axes, relative to one origin.
 
+use crate::asset::material::Wrap;
 use crate::data::coat::{FinEdge, Tile};
 use crate::data::image::Image8;
 use crate::math::{Mat4, Vec2, Vec3, Vec4};
+use crate::shade::light::Directional;
 
 /// Lights that one picture can have.
 pub const MAX_LIGHTS: usize = 16;
@@ -29,8 +31,8 @@ pub struct Skin<'a> {
     pub colour: Vec<Vec3>,
     /// Texture coordinates of `texture`.
     pub uv: Vec<Vec2>,
-    /// Base colour texture, sRGB coded RGBA.
-    pub texture: Option<&'a Image8>,
+    /// Base colour texture, sRGB coded RGBA, and what it shows beyond its borders.
+    pub texture: Option<(&'a Image8, [Wrap; 2])>,
     /// Tile whose innermost transmittance shades this skin.
     pub tile: Option<usize>,
     /// Texture coordinates in that tile.
@@ -88,10 +90,8 @@ pub struct View {
     pub eye: Vec4,
     /// Pixels: width, height.
     pub size: [u32; 2],
-    /// Samples along a pixel's edge; their square is what a pixel averages.
-    pub samples: u32,
-    /// (Unit vector towards the light, irradiance in linear RGB), at most [`MAX_LIGHTS`].
-    pub lights: Vec<(Vec3, Vec3)>,
+    /// At most [`MAX_LIGHTS`].
+    pub lights: Vec<Directional>,
     /// Radiance that comes from everywhere, linear RGB.
     pub ambient: Vec3,
 }

@@ -36,9 +36,9 @@ impl ViewUniform {
     /// The view's numbers; lights past [`MAX_LIGHTS`] were refused before.
     pub fn new(view: &View) -> Self {
         let mut lights = [LightUniform::default(); MAX_LIGHTS];
-        for (slot, (to_light, irradiance)) in lights.iter_mut().zip(&view.lights) {
-            slot.to_light = to_light.to_array();
-            slot.irradiance = irradiance.to_array();
+        for (slot, light) in lights.iter_mut().zip(&view.lights) {
+            slot.to_light = light.to_light.to_array();
+            slot.irradiance = light.irradiance.to_array();
         }
         Self {
             clip_from_world: view.clip_from_world.to_cols_array_2d(),

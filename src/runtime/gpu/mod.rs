@@ -72,6 +72,11 @@ impl<'a> Renderer<'a> {
         Ok(Self { gpu, pipelines, samples, tiles, bare })
     }
 
+    /// Memory of the tiles' textures, bytes.
+    pub fn tile_bytes(&self) -> u64 {
+        self.tiles.iter().map(|tile| tile.bytes).sum()
+    }
+
     /// Draws one frame. The targets are cleared to transparent black.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 
 use super::layout::{CoatVertex, FinInstance, SkinVertex, TileUniform};
 use super::pipelines::Layouts;
+use crate::asset::material::Wrap;
 use crate::data::coat::Tile;
 use crate::data::image::Image8;
 use crate::error::Result;
@@ -25,12 +26,16 @@ fn view(array: &TextureArray) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::TextureView(&array.view)
 }
 
-/// Trilinear; `repeat` per axis.
-fn sampler(gpu: &Gpu, repeat: [bool; 2], anisotropy: u16) -> wgpu::Sampler {
-    let mode = |repeat| if repeat { wgpu::AddressMode::Repeat } else { wgpu::AddressMode::ClampToEdge };
+/// Trilinear; `wrap` per axis.
+fn sampler(gpu: &Gpu, wrap: [Wrap; 2], anisotropy: u16) -> wgpu::Sampler {
+    let mode = |wrap| match wrap {
+        Wrap::Repeat => wgpu::AddressMode::Repeat,
+        Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
+        Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
+    };
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-        address_mode_u: mode(repeat[0]),
-        address_mode_v: mode(repeat[1]),
+        address_mode_u: mode(wrap[0]),
+        address_mode_v: mode(wrap[1]),
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
@@ -68,7 +73,7 @@ impl GpuTile {
         let slopes: Vec<[f32; 2]> = shells.slopes.iter().map(|slope| slope.to_array()).collect();
         let slopes = gpu.buffer("slopes", &slopes, wgpu::BufferUsages::STORAGE);
         let gains = gpu.buffer("gains", &shells.gains, wgpu::BufferUsages::STORAGE);
-        let hair_sampler = sampler(gpu, [true, true], 1);
+        let hair_sampler = sampler(gpu, [Wrap::Repeat; 2], 1);
         let group = bind(
             gpu,
             &layouts.tile,
@@ -82,7 +87,7 @@ impl GpuTile {
                 view(&ends),
             ],
         );
-        let fin_sampler = sampler(gpu, [true, false], 16);
+        let fin_sampler = sampler(gpu, [Wrap::Repeat, Wrap::Clamp], 16);
         let fin = bind(
             gpu,
             &layouts.fin,
@@ -116,9 +121,9 @@ impl GpuSkin {
     /// As [`Gpu::texture_array`].
     pub fn new(gpu: &Gpu, layouts: &Layouts, skin: &Skin<'_>) -> Result<Self> {
         let white = Image8 { width: 1, height: 1, channels: 4, pixels: vec![255; 4] };
-        let image = skin.texture.unwrap_or(&white);
+        let (image, wrap) = skin.texture.unwrap_or((&white, [Wrap::Repeat; 2]));
         let texture = gpu.texture_array("base colour", &mip_chain(image), Coding::Srgb)?;
-        let sampler = sampler(gpu, [true, true], 16);
+        let sampler = sampler(gpu, wrap, 16);
         let material = bind(gpu, &layouts.material, &[wgpu::BindingResource::Sampler(&sampler), view(&texture)]);
         let vertices = SkinVertex::of(skin);
         let bytes = texture.bytes + bytes_of(&vertices) + bytes_of(&skin.triangles);

@@ -1,0 +1,111 @@
+//! Time and memory, step by step: what `--report` writes (`docs/steps/metrics.md`).
+
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// Version of the report files' layout.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// One step.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Step {
+    /// What was done.
+    pub name: String,
+    /// How long it took, ms.
+    pub ms: f64,
+    /// What it holds or reads, bytes; 0 where that means nothing.
+    pub bytes: u64,
+}
+
+/// What a command did and what it cost.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// [`SCHEMA_VERSION`].
+    pub schema_version: u32,
+    /// In the order done.
+    pub steps: Vec<Step>,
+    /// From the report's making to its end, ms.
+    pub total_ms: f64,
+    /// Most memory this process ever held, bytes; `None` where the system does not say.
+    pub peak_bytes: Option<u64>,
+    /// What computed.
+    pub device: String,
+    /// Counts by name: triangles, draw calls, …
+    pub counts: BTreeMap<String, u64>,
+    /// Errors against a reference by name, where one was asked for.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub error: BTreeMap<String, f64>,
+}
+
+/// A report in the making.
+#[derive(Debug)]
+pub struct Recorder {
+    start: Instant,
+    report: Report,
+}
+
+impl Recorder {
+    /// Starts the clock.
+    pub fn new(device: impl Into<String>) -> Self {
+        let report = Report {
+            schema_version: SCHEMA_VERSION,
+            steps: Vec::new(),
+            total_ms: 0.0,
+            peak_bytes: None,
+            device: device.into(),
+            counts: BTreeMap::new(),
+            error: BTreeMap::new(),
+        };
+        Self { start: Instant::now(), report }
+    }
+
+    /// Does `work` as the step `name`; `bytes` says what its result holds.
+    pub fn step<T>(&mut self, name: &str, work: impl FnOnce() -> T, bytes: impl FnOnce(&T) -> u64) -> T {
+        let start = Instant::now();
+        let done = work();
+        self.row(name, start.elapsed().as_secs_f64() * 1e3, bytes(&done));
+        done
+    }
+
+    /// Adds a step that was timed elsewhere; a step of the same name is added to.
+    pub fn row(&mut self, name: &str, ms: f64, bytes: u64) {
+        match self.report.steps.iter_mut().find(|step| step.name == name) {
+            Some(step) => {
+                step.ms += ms;
+                step.bytes = step.bytes.max(bytes);
+            }
+            None => self.report.steps.push(Step { name: name.to_owned(), ms, bytes }),
+        }
+    }
+
+    /// Adds to a count.
+    pub fn count(&mut self, name: &str, more: u64) {
+        *self.report.counts.entry(name.to_owned()).or_default() += more;
+    }
+
+    /// Sets an error against a reference.
+    pub fn error(&mut self, name: &str, value: f64) {
+        self.report.error.insert(name.to_owned(), value);
+    }
+
+    /// Names what computed.
+    pub fn device(&mut self, device: impl Into<String>) {
+        self.report.device = device.into();
+    }
+
+    /// Stops the clock.
+    pub fn finish(mut self) -> Report {
+        self.report.total_ms = self.start.elapsed().as_secs_f64() * 1e3;
+        self.report.peak_bytes = peak_bytes();
+        self.report
+    }
+}
+
+/// Most memory this process ever held (`VmHWM` of Linux), bytes.
+pub fn peak_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes * 1024)
+}

@@ -1,0 +1,211 @@
+//! Floor 8: pictures of a coat: one, or several around it on a contact sheet.
+
+pub mod camera;
+pub mod develop;
+pub mod light;
+pub mod stage;
+
+pub use camera::{Framing, Orbit};
+pub use develop::Background;
+pub use light::{parse_light, parse_triple};
+
+use crate::asset::Asset;
+use crate::data::coat::Coat;
+use crate::data::image::Image8;
+use crate::error::{Error, Result};
+use crate::gpu::{Choice, Gpu};
+use crate::math::{DVec3, Vec3};
+use crate::metrics::timing::{Recorder, Report};
+use crate::runtime::gpu::{Drawn, Renderer};
+use crate::runtime::{Picture, Scene, Show, View};
+use crate::shade::light::Directional;
+
+/// How to look at a coat.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Which adapter draws.
+    pub device: Choice,
+    /// Pixels: width, height, each 1 to 16384 as far as the adapter goes.
+    pub size: [u32; 2],
+    /// From where.
+    pub framing: Framing,
+    /// Lights; none means the studio's.
+    pub lights: Vec<Directional>,
+    /// Radiance from everywhere, linear RGB; `None` means the studio's, or none where lights are given.
+    pub ambient: Option<Vec3>,
+    /// What to draw.
+    pub show: Show,
+    /// Animation by name or number, and seconds into it; `None` is the rest pose.
+    pub moment: Option<(String, f64)>,
+    /// Shading samples along a pixel's edge, 1 to 8. Edges are sampled four times as often in any case.
+    pub samples: u32,
+    /// What is behind the asset.
+    pub background: Background,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            device: Choice::Auto,
+            size: [1024, 1024],
+            framing: Framing::default(),
+            lights: vec![],
+            ambient: None,
+            show: Show::default(),
+            moment: None,
+            samples: 1,
+            background: Background::default(),
+        }
+    }
+}
+
+/// A picture, as light and as a file holds it, and what it cost.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// Linear light, premultiplied.
+    pub picture: Picture,
+    /// Developed: RGBA8 in sRGB coding.
+    pub image: Image8,
+    /// Steps, counts, device.
+    pub report: Report,
+}
+
+/// Reads `--show`: some of `skin`, `shells`, `fins`, with commas between.
+///
+/// # Errors
+/// Names the word that is none of them.
+pub fn parse_show(text: &str) -> Result<Show> {
+    let mut show = Show { skin: false, shells: false, fins: false };
+    for word in text.split(',').map(str::trim) {
+        match word {
+            "skin" => show.skin = true,
+            "shells" => show.shells = true,
+            "fins" => show.fins = true,
+            _ => {
+                return Err(Error::usage("there is no such thing to show")
+                    .with_field("--show")
+                    .with_found(word)
+                    .with_expected("skin, shells, fins, with commas between"));
+            }
+        }
+    }
+    Ok(show)
+}
+
+/// One picture of `asset` wearing `coat`.
+///
+/// # Errors
+/// [`crate::error::Kind::Device`] without an adapter, naming the package that brings one; [`crate::error::Kind::Usage`] for an
+/// unknown animation or a size that does not fit; [`crate::error::Kind::Input`] for broken textures.
+pub fn screenshot(asset: &Asset, coat: &Coat, options: &Options) -> Result<Shot> {
+    let mut shots = shoot(asset, coat, options, &[options.framing])?;
+    let picture = shots.pictures.remove(0);
+    let image = shots.recorder.step("develop", || develop::develop(&picture, options.background), bytes_of);
+    Ok(Shot { picture, image, report: shots.recorder.finish() })
+}
+
+/// A contact sheet of `views` pictures, 1 to 64, evenly around the asset, row by row.
+///
+/// # Errors
+/// As [`screenshot`]; [`crate::error::Kind::Usage`] for a number of views out of range, or a camera file, which cannot turn.
+pub fn turntable(asset: &Asset, coat: &Coat, options: &Options, views: u32) -> Result<Shot> {
+    if !(1..=64).contains(&views) {
+        return Err(Error::usage("the number of views is out of range")
+            .with_field("--turntable")
+            .with_found(views)
+            .with_expected("1 to 64"));
+    }
+    let Framing::Orbit(orbit) = options.framing else {
+        return Err(Error::usage("a turntable turns by itself")
+            .with_field("--camera")
+            .with_found("a camera file")
+            .with_expected("no camera, or `--orbit`"));
+    };
+    let turned = |i| Orbit { azimuth_deg: orbit.azimuth_deg + 360.0 * f64::from(i) / f64::from(views), ..orbit };
+    let framings: Vec<_> = (0..views).map(|i| Framing::Orbit(turned(i))).collect();
+    let mut shots = shoot(asset, coat, options, &framings)?;
+    let columns = f64::from(views).sqrt().ceil() as u32;
+    let picture = sheet(&shots.pictures, columns);
+    let image = shots.recorder.step("develop", || develop::develop(&picture, options.background), bytes_of);
+    Ok(Shot { picture, image, report: shots.recorder.finish() })
+}
+
+fn bytes_of(image: &Image8) -> u64 {
+    image.pixels.len() as u64
+}
+
+struct Shots {
+    pictures: Vec<Picture>,
+    recorder: Recorder,
+}
+
+fn shoot(asset: &Asset, coat: &Coat, options: &Options, framings: &[Framing]) -> Result<Shots> {
+    let mut recorder = Recorder::new("");
+    let gpu = recorder.step("open device", || Gpu::open(&options.device), |_| 0)?;
+    recorder.device(gpu.adapter.to_string());
+    let pose = match &options.moment {
+        Some((name, seconds)) => asset.pose(asset.animation(name)?, *seconds)?,
+        None => asset.rest_pose()?,
+    };
+    let textures = recorder.step(
+        "decode textures",
+        || stage::textures(asset),
+        |decoded| decoded.as_ref().map_or(0, |all| all.values().map(bytes_of).sum()),
+    )?;
+    let scene = recorder.step("pose", || stage::scene(asset, coat, &textures, &pose), |_| 0);
+    let origin_m = asset.parts.first().map_or(DVec3::ZERO, |part| part.centre_units * coat.metres_per_unit);
+    let points_m = stage::points_m(&scene);
+    let renderer = recorder.step(
+        "upload tiles",
+        || Renderer::new(&gpu, &coat.tiles, options.samples),
+        |renderer| renderer.as_ref().map_or(0, Renderer::tile_bytes),
+    )?;
+    let mut pictures = Vec::with_capacity(framings.len());
+    for framing in framings {
+        let aspect = f64::from(options.size[0].max(1)) / f64::from(options.size[1].max(1));
+        let camera = framing.camera(&points_m, origin_m, aspect).checked()?;
+        let [near_m, far_m] = camera::depth_range_m(&camera, &points_m, origin_m);
+        let studio = options.lights.is_empty();
+        let view = View {
+            clip_from_world: camera.clip_from_world(origin_m, aspect, near_m, far_m).as_mat4(),
+            eye: (DVec3::from(camera.eye) - origin_m).as_vec3().extend(1.0),
+            size: options.size,
+            lights: if studio { light::studio(&camera) } else { options.lights.clone() },
+            ambient: options.ambient.unwrap_or(if studio { light::STUDIO_AMBIENT } else { Vec3::ZERO }),
+        };
+        let drawn = draw(&renderer, &scene, &view, options.show, &mut recorder)?;
+        pictures.push(drawn.picture);
+    }
+    Ok(Shots { pictures, recorder })
+}
+
+fn draw(renderer: &Renderer<'_>, scene: &Scene<'_>, view: &View, show: Show, recorder: &mut Recorder) -> Result<Drawn> {
+    let start = std::time::Instant::now();
+    let drawn = renderer.draw(scene, view, show)?;
+    let mut on_device = 0.0;
+    for pass in &drawn.passes {
+        on_device += pass.ms.unwrap_or(0.0);
+        recorder.row(&format!("draw {}", pass.name), pass.ms.unwrap_or(0.0), pass.bytes);
+        recorder.count("draw calls", pass.draw_calls);
+        recorder.count("triangles", pass.triangles);
+    }
+    // Where the adapter has no clock, all of the frame stands here.
+    recorder.row("upload geometry, read back", start.elapsed().as_secs_f64() * 1e3 - on_device, drawn.target_bytes);
+    recorder.count("pictures", 1);
+    Ok(drawn)
+}
+
+/// Pictures of one size side by side; what is left over at the end is empty.
+fn sheet(pictures: &[Picture], columns: u32) -> Picture {
+    let [width, height] = pictures[0].size;
+    let rows = (pictures.len() as u32).div_ceil(columns);
+    let mut pixels = vec![[0.0; 4]; (width * columns) as usize * (height * rows) as usize];
+    for (i, picture) in (0..).zip(pictures) {
+        let (left, top) = (i % columns * width, i / columns * height);
+        for (y, row) in (top..).zip(picture.pixels.chunks_exact(width as usize)) {
+            let start = (y * width * columns + left) as usize;
+            pixels[start..start + row.len()].copy_from_slice(row);
+        }
+    }
+    Picture { size: [width * columns, height * rows], pixels }
+}

@@ -1,0 +1,136 @@
+//! An asset with its coat at a moment, as the runtime draws it: skinned and morphed first, then extruded.
+
+use crate::asset::Asset;
+use crate::asset::part::Part;
+use crate::asset::pose::{Pose, Posed};
+use crate::data::coat::{Coat, CoatPrimitive};
+use crate::data::image::Image8;
+use crate::error::Result;
+use crate::math::{Vec2, Vec3};
+use crate::runtime::{Fur, Scene, Skin};
+use std::collections::{HashMap, HashSet};
+
+/// Decoded base colour textures, by glTF image.
+pub type Textures = HashMap<usize, Image8>;
+
+/// Decodes every base colour texture that the parts use.
+///
+/// # Errors
+/// Names images that are broken or too large.
+pub fn textures(asset: &Asset) -> Result<Textures> {
+    let mut decoded = Textures::new();
+    for image in asset.parts.iter().filter_map(|part| part.base_colour.texture.as_ref()).map(|texture| texture.image) {
+        if let std::collections::hash_map::Entry::Vacant(slot) = decoded.entry(image)
+            && let Some(pixels) = asset.document.decode_image(image)?
+        {
+            slot.insert(pixels);
+        }
+    }
+    Ok(decoded)
+}
+
+/// Everything that `asset` shows in `pose`.
+pub fn scene<'a>(asset: &'a Asset, coat: &'a Coat, textures: &'a Textures, pose: &Pose) -> Scene<'a> {
+    let mut scene = Scene { tiles: &coat.tiles, ..Default::default() };
+    for part in &asset.parts {
+        let worn: Vec<_> =
+            coat.primitives.iter().filter(|worn| (worn.mesh, worn.primitive) == (part.mesh, part.primitive)).collect();
+        for &node in &part.nodes {
+            let posed = part.posed(asset, pose, node, coat.metres_per_unit);
+            for worn in &worn {
+                scene.skins.push(furred_skin(part, &posed, worn, textures));
+                scene.furs.push(fur(&posed, worn));
+            }
+            scene.skins.push(bare_skin(part, &posed, &worn, textures));
+        }
+    }
+    scene
+}
+
+/// All points of the scene, tips of the offsets included, for framing.
+pub fn points_m(scene: &Scene<'_>) -> Vec<Vec3> {
+    let skins =
+        scene.skins.iter().flat_map(|skin| skin.triangles.iter().flatten().map(|&v| skin.positions_m[v as usize]));
+    let tips = scene.furs.iter().flat_map(|fur| fur.positions_m.iter().zip(&fur.offsets_m).map(|(&p, &o)| p + o));
+    skins.chain(tips).filter(|p| p.is_finite()).collect()
+}
+
+fn fur<'a>(posed: &Posed, worn: &'a CoatPrimitive) -> Fur<'a> {
+    let at = |list: &[Vec3]| worn.base_vertex.iter().map(|&v| list[v as usize]).collect();
+    let offsets_m = worn
+        .base_vertex
+        .iter()
+        .zip(&worn.offset)
+        .map(|(&v, &offset)| posed.world_from_offset[v as usize] * offset)
+        .collect();
+    Fur {
+        tile: worn.tile,
+        positions_m: at(&posed.positions_m),
+        normals: at(&posed.normals),
+        offsets_m,
+        uv: &worn.uv,
+        tint: &worn.tint,
+        triangles: &worn.triangles,
+        fins: &worn.fins,
+    }
+}
+
+/// The skin under a coat, on the coat's vertices, so that it knows how much light the hair lets through.
+fn furred_skin<'a>(part: &Part, posed: &Posed, worn: &CoatPrimitive, textures: &'a Textures) -> Skin<'a> {
+    let whole = surface(part, posed, textures);
+    let at = |list: &[Vec3]| worn.base_vertex.iter().map(|&v| list[v as usize]).collect();
+    Skin {
+        positions_m: at(&whole.positions_m),
+        normals: at(&whole.normals),
+        colour: at(&whole.colour),
+        uv: if whole.uv.is_empty() { vec![] } else { worn.base_vertex.iter().map(|&v| whole.uv[v as usize]).collect() },
+        tile: Some(worn.tile),
+        coat_uv: worn.uv.clone(),
+        coat_density: worn
+            .tint
+            .iter()
+            .zip(&worn.offset)
+            .map(|(t, o)| if *o == Vec3::ZERO { 0.0 } else { t.w })
+            .collect(),
+        triangles: worn.triangles.clone(),
+        ..whole
+    }
+}
+
+/// The triangles of a part that no coat covers.
+fn bare_skin<'a>(part: &Part, posed: &Posed, worn: &[&CoatPrimitive], textures: &'a Textures) -> Skin<'a> {
+    let sorted = |mut triangle: [u32; 3]| {
+        triangle.sort_unstable();
+        triangle
+    };
+    let covered: HashSet<[u32; 3]> = worn
+        .iter()
+        .flat_map(|worn| worn.triangles.iter().map(|t| sorted(t.map(|v| worn.base_vertex[v as usize]))))
+        .collect();
+    let triangles = part.stored.triangles.iter().copied().filter(|&t| !covered.contains(&sorted(t))).collect();
+    Skin { triangles, ..surface(part, posed, textures) }
+}
+
+/// Vertices of a part with their base colour; no triangles.
+fn surface<'a>(part: &Part, posed: &Posed, textures: &'a Textures) -> Skin<'a> {
+    let factor = part.base_colour.factor.truncate();
+    let count = posed.positions_m.len();
+    let texture = part.base_colour.texture.as_ref();
+    let image = texture.and_then(|texture| textures.get(&texture.image));
+    let set = texture.and_then(|texture| part.stored.uv_sets.get(texture.uv_set));
+    let uv: Vec<Vec2> = match (texture, set) {
+        (Some(texture), Some(set)) => set.iter().map(|&uv| texture.transformed(uv)).collect(),
+        _ => vec![],
+    };
+    Skin {
+        positions_m: posed.positions_m.clone(),
+        normals: posed.normals.clone(),
+        colour: match &part.stored.colour {
+            Some(colours) => colours.iter().map(|c| factor * c.truncate()).collect(),
+            None => vec![factor; count],
+        },
+        texture: image.filter(|_| !uv.is_empty()).zip(texture).map(|(image, texture)| (image, texture.wrap)),
+        uv,
+        ..Default::default()
+    }
+}
