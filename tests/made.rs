@@ -22,7 +22,12 @@ pub fn tile(seed: u64) -> Tile {
     let mut medium = stack(4, 256);
     // Mean tangents at most as long as the extinction they belong to.
     for image in medium.iter_mut().flatten() {
-        image.pixels.as_chunks_mut::<4>().0.iter_mut().for_each(|p| *p = [p[0], 128 + p[0] / 4, 128 + p[0] / 4, 128 + p[0] / 4]);
+        image
+            .pixels
+            .as_chunks_mut::<4>()
+            .0
+            .iter_mut()
+            .for_each(|p| *p = [p[0], 128 + p[0] / 4, 128 + p[0] / 4, 128 + p[0] / 4]);
     }
     let mut stream = Stream::new(seed + 1);
     let mut fin = || (0..4).map(|mip| noise(&mut stream, [16 >> mip, 8 >> mip], 4, 256)).collect();
