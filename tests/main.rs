@@ -9,6 +9,7 @@
 mod accuracy;
 mod architecture;
 mod cli;
+mod coat_file;
 mod coats;
 mod common;
 mod docs;
@@ -16,6 +17,7 @@ mod field;
 mod harness;
 mod hostile;
 mod laws;
+mod made;
 mod meshes;
 mod patch;
 mod pelts;

@@ -71,6 +71,16 @@ impl Document {
         At::root(&self.json)
     }
 
+    /// The document as GLB.
+    ///
+    /// # Errors
+    /// When it would pass the format's 4 GiB.
+    pub fn to_glb(&self) -> Result<Vec<u8>> {
+        let json = serde_json::to_vec(&self.json)
+            .map_err(|error| Error::new(crate::error::Kind::Output, format!("the JSON cannot be written: {error}")))?;
+        glb::assemble(&json, &self.binary)
+    }
+
     /// How many entries the top-level array `key` has.
     pub fn count(&self, key: &str) -> usize {
         self.json.get(key).and_then(Value::as_array).map_or(0, Vec::len)

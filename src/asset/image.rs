@@ -17,7 +17,12 @@ pub const MAX_PIXELS: u64 = 1 << 26;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Found {
     /// Can be decoded.
-    Usable { width: u32, height: u32 },
+    Usable {
+        /// Pixels per row.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
     /// The file it names is not there.
     Missing,
     /// Neither PNG, JPEG nor WebP.

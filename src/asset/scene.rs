@@ -11,7 +11,14 @@ pub enum Local {
     /// A matrix; cannot be animated.
     Matrix(DMat4),
     /// Scale, then rotation, then translation.
-    Trs { translation: DVec3, rotation: DQuat, scale: DVec3 },
+    Trs {
+        /// Applied last.
+        translation: DVec3,
+        /// Unit quaternion.
+        rotation: DQuat,
+        /// Applied first.
+        scale: DVec3,
+    },
 }
 
 impl Local {

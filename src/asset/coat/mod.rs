@@ -7,6 +7,7 @@ mod textures;
 mod write;
 
 pub use fallback::Fallback;
+pub use flatten::shells as flatten_shells;
 pub use read::read_coat;
 use write::set_extension;
 pub use write::{dress, write_coat};

@@ -5,7 +5,7 @@ use super::{NAME, VERSION, textures};
 use crate::asset::document::Document;
 use crate::asset::encode::{Use, numbers};
 use crate::asset::image::media_type;
-use crate::asset::{Asset, Part, glb, write};
+use crate::asset::{Asset, Part, write};
 use crate::data::coat::{Coat, CoatPrimitive};
 use crate::error::{Error, Kind, Result};
 use serde_json::{Map, Value, json};
@@ -33,8 +33,7 @@ pub fn write_coat(asset: &Asset, coat: &Coat, fallback: Fallback, out: &Path) ->
     let beside = text && same_folder(out, asset.document.folder.as_deref());
     let notes = if beside { Vec::new() } else { take_images_along(&mut document)? };
     if !text {
-        let bytes = glb::assemble(&to_text(&document.json)?, &document.binary)?;
-        write::whole(out, &bytes, &asset.document.files)?;
+        write::whole(out, &document.to_glb()?, &asset.document.files)?;
         return Ok(notes);
     }
     let binary = out.with_extension("bin");

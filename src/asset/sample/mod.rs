@@ -82,7 +82,8 @@ impl Shape {
 
     fn add_triangle(&mut self, triangle: [u32; 3]) {
         let [a, b, c] = triangle.map(|v| self.positions[v as usize]);
-        if (b - a).cross(c - a).length() > 1e-9 {
+        let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
+        if (b - a).cross(c - a).length() > 1e-4 * longest {
             self.triangles.push(triangle);
         }
     }

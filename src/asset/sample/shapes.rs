@@ -72,10 +72,17 @@ pub fn hat() -> Shape {
 
 /// A ball of 10 cm radius: 64 × 32 quads.
 pub fn sphere() -> Shape {
-    Shape::grid(64, 32, |u, v| {
+    let mut sphere = ball(64, 32);
+    sphere.positions.iter_mut().for_each(|p| *p *= 0.1);
+    sphere
+}
+
+/// The unit ball.
+pub fn ball(columns: u32, rows: u32) -> Shape {
+    Shape::grid(columns, rows, |u, v| {
         let (around, up) = (turn(-u), turn(0.5 * v - 0.25));
         let normal = Vec3::new(around.x * up.x, up.y, around.y * up.x);
-        (0.1 * normal, normal)
+        (normal, normal)
     })
 }
 

@@ -1,0 +1,77 @@
+//! Coats made up for tests of files: every field has its own numbers, so that a mix-up shows.
+
+use furrier::asset::Asset;
+use furrier::data::coat::{Coat, CoatPrimitive, FinEdge, FinTexture, ShellStack, Tile};
+use furrier::data::image::Image8;
+use furrier::math::hash::Stream;
+use furrier::math::{Vec2, Vec4};
+
+fn noise(stream: &mut Stream, size: [u32; 2], channels: u32, top: u64) -> Image8 {
+    let mut image = Image8::new(size[0], size[1], channels);
+    image.pixels.iter_mut().for_each(|p| *p = (stream.bits() % top) as u8);
+    image
+}
+
+/// A tile of noise: 5 layers, 8 texels, 4 mips.
+pub fn tile(seed: u64) -> Tile {
+    let mut stream = Stream::new(seed);
+    let mut stack = |channels, top| -> Vec<Vec<Image8>> {
+        (0..4).map(|mip| (0..5).map(|_| noise(&mut stream, [8 >> mip; 2], channels, top)).collect()).collect()
+    };
+    let (albedo, ends) = (stack(4, 256), stack(1, 60));
+    let mut medium = stack(4, 256);
+    // Mean tangents at most as long as the extinction they belong to.
+    for image in medium.iter_mut().flatten() {
+        image
+            .pixels
+            .as_chunks_mut::<4>()
+            .0
+            .iter_mut()
+            .for_each(|p| *p = [p[0], 128 + p[0] / 4, 128 + p[0] / 4, 128 + p[0] / 4]);
+    }
+    let mut stream = Stream::new(seed + 1);
+    let mut fin = || (0..4).map(|mip| noise(&mut stream, [16 >> mip, 8 >> mip], 4, 256)).collect();
+    let (fin_albedo, fin_tangent) = (fin(), fin());
+    Tile {
+        preset: format!("made {seed}"),
+        edge_m: 0.008,
+        height_m: 0.012,
+        shells: ShellStack {
+            layers: 5,
+            size: 8,
+            gains: (0..4).map(|mip| std::array::from_fn(|i| 1.0 + 0.01 * (mip * 9 + i) as f32)).collect(),
+            slopes: (0..5).map(|i| Vec2::new(0.1 * i as f32, -0.05 * i as f32)).collect(),
+            extinction_scale_per_m: 250.0,
+            albedo,
+            medium,
+            ends,
+        },
+        fin: FinTexture { size: [16, 8], width_m: 0.008, thickness_m: 0.002, albedo: fin_albedo, tangent: fin_tangent },
+    }
+}
+
+/// A coat over every part: hair along the normals, a twentieth of the asset long.
+pub fn coat_for(asset: &Asset) -> Coat {
+    let mut coat = Coat { tiles: vec![tile(1), tile(2)], primitives: Vec::new() };
+    let length = 0.05 * asset.diagonal_units as f32;
+    for (index, part) in asset.parts.iter().enumerate() {
+        let mesh = part.mesh(1.0).expect("a part is sound");
+        let n = mesh.positions_m.len();
+        let uv = |v: usize| mesh.uv_sets.first().map_or(mesh.positions_m[v].truncate(), |set| set[v]);
+        let fin =
+            |t: &[u32; 3]| FinEdge { ends: [t[0], t[1]], opposite: [t[2], t[0]], u: [0.25, 0.75], thickness: 0.5 };
+        coat.primitives.push(CoatPrimitive {
+            mesh: part.mesh,
+            primitive: part.primitive,
+            tile: index % 2,
+            base_vertex: (0..n as u32).collect(),
+            uv: (0..n).map(uv).collect(),
+            patch: (0..n as u32).map(|v| v % 3).collect(),
+            offset: (0..n).map(|v| part.local_offset(v, mesh.normals[v] * length, 1.0)).collect(),
+            tint: (0..n).map(|v| Vec4::new(1.0, 0.5, (v % 7) as f32 / 7.0, 1.0)).collect(),
+            triangles: mesh.triangles.clone(),
+            fins: mesh.triangles.iter().map(fin).collect(),
+        });
+    }
+    coat
+}
