@@ -39,6 +39,9 @@ pub struct Stats {
     pub faces: usize,
     /// Skin area, m².
     pub area_m2: f64,
+    /// Length of the edges inside the skin across which the texture does not go on, m: borders between patches and
+    /// cuts within them.
+    pub seams_m: f64,
     /// Singular values of the map from skin to texture over the tile scale: 1 is neither stretched nor squeezed.
     pub singular_values: Spread,
     /// Share of the area whose singular values both lie in [0.7, 1.4].

@@ -3,6 +3,7 @@
 use super::face::{Face, singular_values};
 use crate::data::mesh::Mesh;
 use crate::data::patches::{Patches, Spread, Stats};
+use crate::data::topology::{NO_NEIGHBOUR, Topology};
 use crate::math::{DVec2, Vec3};
 
 /// Singular values that pass for unstretched (the bounds that `Stats::within` counts).
@@ -37,11 +38,29 @@ pub(super) fn measure(mesh: &Mesh, faces: &[Face], direction: &[Vec3], tile_edge
             combed += face.area_m2;
         }
     }
+    stats.seams_m = seams(mesh, patches).map(|[a, b]| f64::from(a.distance(b))).sum();
     stats.within /= stats.area_m2.max(f64::MIN_POSITIVE);
     stats.field_angle_rad = angle / f64::max(combed, f64::MIN_POSITIVE);
     stats.singular_values = spread(values);
     stats.tiles_per_m = spread(densities);
     stats
+}
+
+/// Ends of the edges between two triangles that differ in texture coordinates there.
+fn seams<'a>(mesh: &'a Mesh, patches: &'a Patches) -> impl Iterator<Item = [Vec3; 2]> + 'a {
+    let topology = Topology::new(&mesh.triangles, |v| mesh.position_class[v as usize]);
+    (0..3 * mesh.triangles.len()).filter_map(move |e| {
+        let across = topology.across[e];
+        // Each edge once, from its lower side.
+        if across == NO_NEIGHBOUR || (across as usize) < e {
+            return None;
+        }
+        let uv = |e: usize| patches.uv[patches.triangles[e / 3][e % 3] as usize];
+        let next = |e: usize| e - e % 3 + (e + 1) % 3;
+        let continued = uv(e) == uv(next(across as usize)) && uv(next(e)) == uv(across as usize);
+        let [a, b] = [e % 3, (e + 1) % 3].map(|k| mesh.positions_m[mesh.triangles[e / 3][k] as usize]);
+        (!continued).then_some([a, b])
+    })
 }
 
 /// Mean and percentiles of (value, weight) pairs; zeros for none.

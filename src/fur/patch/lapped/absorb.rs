@@ -1,7 +1,7 @@
 //! Crumbs left between patches join a neighbour, at a little more stretch than growth allows.
 
 use super::Surface;
-use super::flatten::flatten;
+use super::flatten::{Effort, flatten};
 use super::patch::{Limits, Patch, fits};
 use std::collections::BTreeSet;
 
@@ -46,7 +46,7 @@ pub(super) fn absorb(surface: &Surface, patches: &mut [Patch], owner: &mut [u32]
     }
     for patch in changed {
         if !patches[patch].faces.is_empty() {
-            flatten(surface, &mut patches[patch]);
+            flatten(surface, &mut patches[patch], Effort::Final);
         }
     }
 }

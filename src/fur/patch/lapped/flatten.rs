@@ -13,13 +13,21 @@ use crate::math::sparse::Cholesky;
 /// How far a triangle's aim follows the rotation it took rather than its comb: 0 keeps to the comb at any stretch, 1
 /// forgets it.
 const YIELD: f64 = 0.8;
-/// Solutions with moved aims.
-const ROUNDS: usize = 3;
 /// Weight of a plain spring along each edge, against cotangents: holds triangles without area, and slivers.
 const SPRING: f64 = 1e-4;
 
+/// How often aims move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Effort {
+    /// Once: enough to see how far a growing patch may go.
+    Sketch,
+    /// Until more changes nothing that counts.
+    Final,
+}
+
 /// Solves for the flat positions of `patch`, then scales them so that its singular values are 1 on average.
-pub(super) fn flatten(surface: &Surface, patch: &mut Patch) {
+pub(super) fn flatten(surface: &Surface, patch: &mut Patch, effort: Effort) {
+    let rounds = if effort == Effort::Sketch { 1 } else { 3 };
     let unknowns = patch.uv.len() - 1;
     let springs: Vec<[f64; 3]> = patch.faces.iter().map(|&f| weights(surface.faces[f as usize].corners_m())).collect();
     let mut lower = Vec::with_capacity(12 * patch.faces.len());
@@ -38,7 +46,7 @@ pub(super) fn flatten(surface: &Surface, patch: &mut Patch) {
         }
     }
     let Some(cholesky) = Cholesky::new(unknowns, &lower) else { return };
-    for round in 0..=ROUNDS {
+    for round in 0..=rounds {
         let mut sides = vec![0.0; 2 * unknowns];
         for (slot, corners) in patch.corners.iter().enumerate() {
             let flat = surface.faces[patch.faces[slot] as usize].corners_m();
@@ -57,7 +65,7 @@ pub(super) fn flatten(surface: &Surface, patch: &mut Patch) {
         for v in 0..unknowns {
             patch.uv[v + 1] = DVec2::new(sides[v], sides[unknowns + v]);
         }
-        if round < ROUNDS {
+        if round < rounds {
             aim(surface, patch);
         }
     }

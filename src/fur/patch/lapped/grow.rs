@@ -1,7 +1,7 @@
 //! Growth: triangles join from the seed outwards in an irregular outline, while the patch still lies flat.
 
 use super::Surface;
-use super::flatten::flatten;
+use super::flatten::{Effort, flatten};
 use super::patch::{FREE, Limits, Patch, fits};
 use crate::data::topology::NO_NEIGHBOUR;
 use crate::math::DVec2;
@@ -9,16 +9,17 @@ use crate::math::hash::{Stream, combine};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
 
-/// What a triangle must keep to when it joins and after each flattening; inside `measure::WITHIN`, as later triangles
-/// push earlier ones a little further.
-const LIMITS: Limits = Limits { least: 0.75, most: 1.33, angle_rad: 0.6 };
-/// Triangles joined between two flattenings: this share of the patch, so that all flattenings together cost a small
-/// multiple of the last one.
-const BATCH: f64 = 0.6;
-/// And at least this many.
+/// What a triangle must keep to when it joins and after each flattening. Wider than `measure::WITHIN`: the few
+/// triangles beyond that cost less than the seams that narrower limits bring (table in `docs/steps/patch.md`).
+const LIMITS: Limits = Limits { least: 0.65, most: 1.5, angle_rad: 0.8 };
+/// Triangles joined between two flattenings: as many as the patch has, so that all flattenings together cost about
+/// twice the last one.
 const LEAST_BATCH: usize = 12;
-/// A batch that brings less than this share ends the growth: the rest is closed in by limits.
-const ENOUGH: f64 = 0.02;
+/// A batch that brings less than this share of the patch is the last.
+const ENOUGH: f64 = 0.05;
+/// Triangles that a patch may have: keeps the time for large meshes proportional to their size, at 20 patches and more
+/// for a million triangles.
+const MOST_FACES: usize = 50_000;
 
 /// Grows the patch `id` from `seed` over triangles that `owner` shows free, and enters them there.
 pub(super) fn grow(surface: &Surface, seed: usize, id: u32, random: u64, owner: &mut [u32]) -> Patch {
@@ -28,19 +29,17 @@ pub(super) fn grow(surface: &Surface, seed: usize, id: u32, random: u64, owner: 
     let mut refused = HashSet::new();
     loop {
         let before = patch.faces.len();
-        let batch = LEAST_BATCH.max((BATCH * before as f64) as usize);
+        let batch = LEAST_BATCH.max(before).min(MOST_FACES.saturating_sub(before));
         extend(surface, &mut patch, id, batch, &outline, &refused, owner);
         let added = patch.faces.len() - before;
-        if added > 0 {
-            flatten(surface, &mut patch);
-            peel(surface, &mut patch, &mut refused, owner);
-        }
-        if (added as f64) <= ENOUGH * before as f64 || added == 0 {
+        if added as f64 <= ENOUGH * before as f64 {
             break;
         }
+        flatten(surface, &mut patch, Effort::Sketch);
+        peel(surface, &mut patch, &mut refused, owner);
     }
-    // What was peeled pulls no longer.
-    flatten(surface, &mut patch);
+    flatten(surface, &mut patch, Effort::Final);
+    peel(surface, &mut patch, &mut refused, owner);
     patch
 }
 
