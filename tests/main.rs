@@ -24,3 +24,4 @@ mod ribbons;
 mod runtime;
 mod silhouette;
 mod twins;
+mod undercoat;
