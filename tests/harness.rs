@@ -65,3 +65,17 @@ fn blocks_tell_hair_moved_by_a_pixel() {
     ribbons.guard.rotate_right(2);
     assert!(crate::ribbons::worst_block(&ribbons, &rays) > 0.03);
 }
+
+#[test]
+fn one_percent_of_depth_tells_hair_a_fortieth_thicker() {
+    use furrier::math::DVec3;
+    for direction in crate::undercoat::directions() {
+        let hairs = crate::undercoat::scaled(DVec3::Z, direction);
+        let thicker = crate::undercoat::Cylinders { diameter_m: 1.025 * hairs.diameter_m, ..hairs };
+        let (a, b) = (
+            crate::undercoat::depth_of_volume(&hairs, direction),
+            crate::undercoat::depth_of_volume(&thicker, direction),
+        );
+        assert!((b - a).abs() > 0.01 * a, "{a} and {b} along {direction}");
+    }
+}

@@ -26,4 +26,5 @@ mod ribbons;
 mod runtime;
 mod silhouette;
 mod twins;
+mod undercoat;
 mod viewer;

@@ -4,3 +4,4 @@ pub mod field;
 pub mod groom;
 pub mod grow;
 pub mod patch;
+pub mod undercoat;

@@ -2,9 +2,13 @@
 
 use super::bins::{Bins, Grid, Reach, TILE};
 use super::flat::{self, Flat, pixel_ray};
+use super::march::enter::Entrances;
+use super::march::light::UndercoatShader;
+use super::march::volume::{Resolution, Volume};
+use super::march::{self, Start, Stepping};
 use super::pelt::{Lighting, Pelt};
 use super::rays::Camera;
-use super::resolve::{self, Blending, Face, Pixel};
+use super::resolve::{self, Blending, Face, OPAQUE, Pixel, Stretch};
 use super::skin::{self, NONE, SkinTile};
 use super::strands::ribbon::{self, Share, Window};
 use super::strands::shade::GuardShader;
@@ -13,6 +17,8 @@ use super::view::View;
 use crate::data::film::Film;
 use crate::data::strands::Strands;
 use crate::error::Result;
+use crate::fur::undercoat::Undercoat;
+use crate::math::fast::exp_negative;
 use crate::math::{Vec2, Vec3, sampling};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -26,13 +32,24 @@ pub struct Settings {
     pub passes: usize,
     /// How guard hair and undercoat are ordered.
     pub blending: Blending,
+    /// How finely rays are followed through undercoat.
+    pub stepping: Stepping,
+    /// How finely undercoat is stored.
+    pub resolution: Resolution,
     /// Memory for the strands of a band of rows, bytes: smaller budgets give more bands and the same picture.
     pub band_bytes: usize,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { size: [512, 512], passes: 1, blending: Blending::Virtual { fragments: 8 }, band_bytes: 256 << 20 }
+        Self {
+            size: [512, 512],
+            passes: 1,
+            blending: Blending::Virtual { fragments: 8 },
+            stepping: Stepping::default(),
+            resolution: Resolution::default(),
+            band_bytes: 256 << 20,
+        }
     }
 }
 
@@ -65,8 +82,12 @@ pub struct Counts {
     pub strands: u64,
     /// Their pieces.
     pub pieces: u64,
-    /// Fragments composited.
+    /// Fragments of guard hair composited.
     pub fragments: u64,
+    /// Steps through undercoat.
+    pub steps: u64,
+    /// Sub-elements filled.
+    pub subelements: u64,
 }
 
 /// Renders a picture.
@@ -77,14 +98,42 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
     let mut picture = Picture { film: Film::default(), rows: Vec::new(), counts: Counts::default() };
     let passes = settings.passes.max(1);
     let normals = pelt.skin.smooth_normals();
+    let start = Instant::now();
+    let middle = View::new(camera, settings.size, Vec2::ZERO)?;
+    let subdivisions = subdivisions(pelt, &middle, &settings.resolution);
+    let volume = Volume::new(pelt, &normals, lighting.key.to_light, settings.resolution, subdivisions);
+    row(&mut picture, "shell", start, volume.as_ref().map_or(0, |v| v.shell().bytes()));
     for pass in 0..passes {
         let shift = if passes == 1 { Vec2::ZERO } else { sampling::r2(pass as u64, 1 << 63) - 0.5 };
         let view = View::new(camera, settings.size, shift)?;
-        let film = Pass::new(pelt, lighting, &normals, view, settings)?.run(&mut picture);
+        let film = Pass::new(pelt, lighting, &normals, volume.as_ref(), view, settings)?.run(&mut picture);
         if pass == 0 { picture.film = film } else { add(&mut picture.film, &film) }
     }
     finish(&mut picture.film, 1.0 / passes as f32);
+    if let Some(volume) = &volume {
+        let [density, shadow] = volume.bytes();
+        picture.rows.push(Row { name: "densities", ms: 0.0, bytes: density });
+        picture.rows.push(Row { name: "shadows", ms: 0.0, bytes: shadow });
+        picture.counts.subelements = density as u64;
+    }
     Ok(picture)
+}
+
+/// Subdivisions d per triangle: sub-elements about as large as asked for on the picture, but no finer than what there is
+/// to see.
+fn subdivisions(pelt: &Pelt<'_>, view: &View, resolution: &Resolution) -> Vec<u8> {
+    let Some(fibre) = pelt.undercoat else { return Vec::new() };
+    let detail_m = Undercoat::new(fibre, resolution.pattern).detail_m();
+    (0..pelt.skin.triangles.len())
+        .map(|t| {
+            let corners = pelt.skin.corners_m(t);
+            let edge_m = (0..3).map(|i| corners[i].distance(corners[(i + 1) % 3])).fold(0.0, f32::max);
+            let nearest_m = corners.map(|p| view.camera_from_world(p).z).into_iter().fold(f32::INFINITY, f32::min);
+            let wanted_m = resolution.subelement_px * nearest_m.max(view.near_m) / view.focal_px;
+            let splits = edge_m / wanted_m.max(detail_m);
+            libm::ceilf(libm::log2f(splits.max(1.0))).clamp(0.0, resolution.most_subdivisions.min(10) as f32) as u8
+        })
+        .collect()
 }
 
 struct Pass<'a> {
@@ -96,6 +145,7 @@ struct Pass<'a> {
     /// The skin's vertices in camera axes.
     skin_camera_m: Vec<Vec3>,
     guard: Option<(&'a Strands, GuardShader<'a>)>,
+    undercoat: Option<(&'a Volume<'a>, UndercoatShader<'a>)>,
 }
 
 /// The strands of a band, ready to be drawn.
@@ -112,6 +162,7 @@ impl<'a> Pass<'a> {
         pelt: &'a Pelt<'a>,
         lighting: &'a Lighting,
         normals: &'a [Vec3],
+        volume: Option<&'a Volume<'a>>,
         view: View,
         settings: &'a Settings,
     ) -> Result<Self> {
@@ -120,7 +171,8 @@ impl<'a> Pass<'a> {
             None => None,
         };
         let skin_camera_m = pelt.skin.positions_m.iter().map(|&p| view.camera_from_world(p)).collect();
-        Ok(Self { pelt, lighting, normals, view, settings, skin_camera_m, guard })
+        let undercoat = volume.map(|volume| (volume, UndercoatShader::new(pelt, lighting)));
+        Ok(Self { pelt, lighting, normals, view, settings, skin_camera_m, guard, undercoat })
     }
 
     fn run(&self, picture: &mut Picture) -> Film {
@@ -148,6 +200,10 @@ impl<'a> Pass<'a> {
         row(picture, "base mesh", start, skin_bins.bytes() + tiles.len() * TILE * TILE * 8);
 
         let start = Instant::now();
+        let entrances = self.undercoat.as_ref().map(|(volume, _)| Entrances::new(volume, &self.view, &whole));
+        row(picture, "shell entrances", start, entrances.as_ref().map_or(0, Entrances::bytes));
+
+        let start = Instant::now();
         let strand_reach = self.strand_reaches(&whole, &tiles);
         let bands = self.bands(&whole, &strand_reach);
         row(picture, "strand geometry", start, strand_reach.len() * size_of::<Reach>());
@@ -160,20 +216,23 @@ impl<'a> Pass<'a> {
             picture.counts.strands += band.strands.len() as u64;
 
             let start = Instant::now();
-            let fragments: u64 = film_rows(&mut film, &grid)
+            let [fragments, steps] = film_rows(&mut film, &grid)
                 .map(|mut rows| {
                     let mut scratch = Scratch::default();
                     let row = rows.row;
-                    (0..grid.columns)
-                        .map(|column| {
-                            let tile = &tiles[(grid.first_row + row) * whole.columns + column];
-                            self.tile(&grid, column, row, tile, &band, &mut scratch, &mut rows)
-                        })
-                        .sum::<u64>()
+                    for column in 0..grid.columns {
+                        let tile = (grid.first_row + row) * whole.columns + column;
+                        if let Some(entrances) = &entrances {
+                            self.march_tile(entrances, tile, column, grid.first_row + row, &tiles[tile], &mut scratch);
+                        }
+                        self.tile(&grid, column, row, &tiles[tile], &band, &mut scratch, &mut rows);
+                    }
+                    [scratch.fragment_count, scratch.step_count]
                 })
-                .sum();
-            row(picture, "compositing", start, 0);
+                .reduce(|| [0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+            row(picture, "march and compositing", start, 0);
             picture.counts.fragments += fragments;
+            picture.counts.steps += steps;
             picture.counts.pieces += band.bins.items() as u64;
         }
         film
@@ -284,7 +343,7 @@ impl<'a> Pass<'a> {
         Band { strands: visible, knots, looks, bins }
     }
 
-    /// Draws one tile; returns how many fragments it took.
+    /// Draws one tile, over the undercoat that [`Self::march_tile`] found there.
     #[expect(clippy::too_many_arguments, reason = "the tile's place and its inputs, each of another kind")]
     fn tile(
         &self,
@@ -295,15 +354,15 @@ impl<'a> Pass<'a> {
         band: &Band,
         scratch: &mut Scratch,
         out: &mut FilmRows<'_>,
-    ) -> u64 {
+    ) {
         let [width, height] = self.settings.size;
         let (x0, y0) = (column * TILE, (grid.first_row + row) * TILE);
         let window = Window {
             from: [x0 as i32, y0 as i32],
             to: [(x0 + TILE).min(width) as i32, (y0 + TILE).min(height) as i32],
         };
-        let mut count = 0;
-        scratch.clear();
+        let Scratch { pixels, stretches, opaque_m, fragment_count, .. } = scratch;
+        pixels.iter_mut().for_each(Vec::clear);
         if let Some((strands, _)) = &self.guard {
             let points = strands.points_per_strand;
             for &piece in band.bins.of(row * grid.columns + column) {
@@ -313,10 +372,12 @@ impl<'a> Pass<'a> {
                     let [x, y] = share.pixel.map(|v| v as usize);
                     let at = (y - y0) * TILE + x - x0;
                     let z_m = a.z_m + share.along * (b.z_m - a.z_m);
-                    if z_m < skin_tile.z_m[at] || self.before_skin(a, b, &share, z_m, skin_tile.triangle[at]) {
+                    let before_skin =
+                        z_m < skin_tile.z_m[at] || self.before_skin(a, b, &share, z_m, skin_tile.triangle[at]);
+                    if z_m < opaque_m[at] && before_skin {
                         let Share { coverage, along, .. } = share;
-                        scratch.pixels[at].push(Fragment { z_m, id, coverage, knot: piece, along });
-                        count += 1;
+                        pixels[at].push(Fragment { z_m, id, coverage, knot: piece, along });
+                        *fragment_count += 1;
                     }
                 });
             }
@@ -324,19 +385,110 @@ impl<'a> Pass<'a> {
         for y in y0..(y0 + TILE).min(height) {
             for x in x0..(x0 + TILE).min(width) {
                 let at = (y - y0) * TILE + x - x0;
-                let fragments = &mut scratch.pixels[at];
+                let fragments = &mut pixels[at];
                 resolve::order(fragments);
                 let skin_face = self.skin_face(x, y, skin_tile.triangle[at]);
                 let face = |f: &Fragment| match &self.guard {
                     Some((strands, _)) => self.hair_face(strands, band, f),
                     None => (Face::default(), 0.0),
                 };
-                let pixel = resolve::composite(fragments, &[], self.settings.blending, skin_face.as_ref(), face);
+                let pixel =
+                    resolve::composite(fragments, &stretches[at], self.settings.blending, skin_face.as_ref(), face);
                 let depth_scale = pixel_ray(&self.view, x, y).length();
                 out.set(y - y0, x, &pixel, depth_scale);
             }
         }
-        count
+    }
+
+    /// Marches the rays of one tile through the undercoat.
+    fn march_tile(
+        &self,
+        entrances: &Entrances,
+        tile: usize,
+        column: usize,
+        row: usize,
+        skin_tile: &SkinTile,
+        scratch: &mut Scratch,
+    ) {
+        let Some((volume, shader)) = &self.undercoat else { return };
+        let [width, height] = self.settings.size;
+        let (x0, y0) = (column * TILE, row * TILE);
+        let Scratch { starts, stretches, opaque_m, step_count, .. } = scratch;
+        starts.iter_mut().for_each(Vec::clear);
+        stretches.iter_mut().for_each(Vec::clear);
+        opaque_m.fill(f32::INFINITY);
+        for (face, corners) in entrances.of_tile(tile) {
+            let flat = Flat::new(corners);
+            let [columns, rows] = self.pixels(&flat::reach(&self.view, &corners));
+            for y in rows.start.max(y0)..rows.end.min(y0 + TILE) {
+                for x in columns.start.max(x0)..columns.end.min(x0 + TILE) {
+                    let at = (y - y0) * TILE + x - x0;
+                    let ray = pixel_ray(&self.view, x, y);
+                    if let Some(meeting) = flat.meet(ray)
+                        && flat.faces_eye()
+                        && meeting.z_m < skin_tile.z_m[at]
+                    {
+                        starts[at].push(entrances.start(face, meeting.barycentric, meeting.z_m * ray.length()));
+                    }
+                }
+            }
+        }
+        for y in y0..(y0 + TILE).min(height) {
+            for x in x0..(x0 + TILE).min(width) {
+                let at = (y - y0) * TILE + x - x0;
+                starts[at].extend(entrances.around_eye());
+                if starts[at].is_empty() {
+                    continue;
+                }
+                // Faces that meet on a ray give one entrance each: the next march begins where the last one ended.
+                starts[at].sort_unstable_by(|a, b| a.at_m.total_cmp(&b.at_m).then(a.triangle.cmp(&b.triangle)));
+                starts[at].dedup_by(|next, kept| next.at_m - kept.at_m < 1e-6 * kept.at_m);
+                let through = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+                let direction = self.view.direction(through);
+                let scale = direction.length();
+                let ray =
+                    PixelRay { direction: direction / scale, z_per_m: 1.0 / scale, far_m: skin_tile.z_m[at] * scale };
+                for &start in &starts[at] {
+                    let opaque = self.march_pixel(volume, shader, &ray, start, &mut stretches[at], step_count);
+                    opaque_m[at] = opaque_m[at].min(opaque);
+                }
+                stretches[at].sort_by(|a, b| a.from_m.total_cmp(&b.from_m));
+            }
+        }
+    }
+
+    /// Adds the stretches of one march; returns the depth from which undercoat hides everything.
+    fn march_pixel(
+        &self,
+        volume: &Volume<'_>,
+        shader: &UndercoatShader<'_>,
+        ray: &PixelRay,
+        start: Start,
+        stretches: &mut Vec<Stretch>,
+        step_count: &mut u64,
+    ) -> f32 {
+        let groups = match self.settings.blending {
+            Blending::Virtual { fragments } => fragments.clamp(1, 64) as f32,
+            Blending::Simplified { .. } => 1.0,
+        };
+        let mut through = 1.0_f32;
+        let mut group = Group::default();
+        let (eye_m, stepping) = (self.view.eye_m, &self.settings.stepping);
+        march::march(volume, eye_m, ray.direction, start, ray.far_m, stepping, |step| {
+            *step_count += 1;
+            let left = through * exp_negative(-step.depth);
+            let (albedo, radiance) = shader.look(volume, step, ray.direction);
+            group.add(step, through - left, albedo, radiance);
+            // A new virtual fragment at equal parts of what the march hides in the end.
+            if ((1.0 - left) * groups).floor() > ((1.0 - through) * groups).floor() {
+                stretches.extend(group.take(ray.z_per_m));
+            }
+            through = left;
+            through > OPAQUE
+        });
+        let end_m = group.to_m.max(stretches.last().map_or(0.0, |s| s.to_m / ray.z_per_m)) * ray.z_per_m;
+        stretches.extend(group.take(ray.z_per_m));
+        if through > OPAQUE { f32::INFINITY } else { end_m }
     }
 
     /// Whether a hair that lies behind the skin of a pixel's middle lies before the skin of its own place: on slanting
@@ -377,20 +529,76 @@ impl<'a> Pass<'a> {
     }
 }
 
-/// Fragments by pixel of a tile, kept between tiles for their memory.
+/// The ray through a pixel's middle.
+struct PixelRay {
+    direction: Vec3,
+    /// Depth along the optical axis per distance along the ray.
+    z_per_m: f32,
+    /// Where skin hides the rest, m along the ray.
+    far_m: f32,
+}
+
+/// Steps of a march on their way to become one virtual fragment.
+#[derive(Default)]
+struct Group {
+    from_m: f32,
+    to_m: f32,
+    depth: f32,
+    weight: f32,
+    radiance: Vec3,
+    albedo: Vec3,
+    tangent: Vec3,
+}
+
+impl Group {
+    fn add(&mut self, step: &march::Step, weight: f32, albedo: Vec3, radiance: Vec3) {
+        if self.depth == 0.0 {
+            self.from_m = step.from_m;
+        }
+        self.to_m = step.from_m + step.length_m;
+        self.depth += step.depth;
+        self.weight += weight;
+        self.radiance += weight * radiance;
+        self.albedo += weight * albedo;
+        self.tangent += weight * step.hair;
+    }
+
+    fn take(&mut self, z_per_m: f32) -> Option<Stretch> {
+        let group = std::mem::take(self);
+        let scale = 1.0 / group.weight;
+        (group.depth > 0.0 && scale.is_finite()).then(|| Stretch {
+            from_m: group.from_m * z_per_m,
+            to_m: group.to_m * z_per_m,
+            depth: group.depth,
+            radiance: group.radiance * scale,
+            albedo: group.albedo * scale,
+            tangent: group.tangent * scale,
+        })
+    }
+}
+
+/// What a tile's pixels hold, kept between tiles for its memory.
 struct Scratch {
     pixels: Vec<Vec<Fragment>>,
+    starts: Vec<Vec<Start>>,
+    stretches: Vec<Vec<Stretch>>,
+    /// Depth from which undercoat hides everything, m.
+    opaque_m: Vec<f32>,
+    fragment_count: u64,
+    step_count: u64,
 }
 
 impl Default for Scratch {
     fn default() -> Self {
-        Self { pixels: vec![Vec::new(); TILE * TILE] }
-    }
-}
-
-impl Scratch {
-    fn clear(&mut self) {
-        self.pixels.iter_mut().for_each(Vec::clear);
+        const SIZE: usize = TILE * TILE;
+        Self {
+            pixels: vec![Vec::new(); SIZE],
+            starts: vec![Vec::new(); SIZE],
+            stretches: vec![Vec::new(); SIZE],
+            opaque_m: vec![f32::INFINITY; SIZE],
+            fragment_count: 0,
+            step_count: 0,
+        }
     }
 }
 

@@ -1,0 +1,126 @@
+//! Undercoat as a density over the shell: how many hairs reach a height, how they crowd, how they block a ray
+//! (`docs/steps/march.md`).
+
+use super::groom::clump;
+use super::groom::fibre::{Fibre, LENGTH_SPREAD};
+use crate::math::Vec3;
+use crate::math::noise::simplex;
+
+/// The pattern that thins and thickens undercoat (Andersen et al. 2016 §3.2): one noise over the skin through all layers,
+/// blurred towards the tips.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pattern {
+    /// Largest relative departure from the mean density, in [0, 1].
+    pub amplitude: f32,
+    /// Distance between features, in distances between clumps.
+    pub wavelength: f32,
+    /// Sideways jitter of the pattern at the tips, in wavelengths.
+    pub jitter: f32,
+}
+
+impl Default for Pattern {
+    fn default() -> Self {
+        Self { amplitude: 0.4, wavelength: 0.5, jitter: 0.5 }
+    }
+}
+
+/// A kind of hair as a volume. Heights t are shares of the tallest hair's, in [0, 1].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Undercoat {
+    /// Hairs per skin area, 1/m².
+    pub density_per_m2: f32,
+    /// Diameter, m.
+    pub diameter_m: f32,
+    /// Height of the tallest hair, m, where the length field is 1.
+    pub height_m: f32,
+    /// Length along the hair over its height.
+    pub stretch: f32,
+    /// Standard deviation of each hair's slope against the mean.
+    pub slope: f32,
+    pattern: Pattern,
+    mean: f32,
+    spread: f32,
+    clump_spacing_m: f32,
+    clump_strength: f32,
+}
+
+impl Undercoat {
+    /// Of a kind of hair, with or without a pattern in its density.
+    pub fn new(fibre: &Fibre, pattern: Option<Pattern>) -> Self {
+        let variation = fibre.shape.length_variation;
+        let mean = 1.0 / (1.0 + LENGTH_SPREAD * variation);
+        let spacing_m = fibre.shape.clump.spacing_mm * 1e-3;
+        let height_m = fibre.height_m();
+        Self {
+            density_per_m2: fibre.density_per_m2,
+            diameter_m: fibre.radius_m * (1.0 + fibre.profile.taper),
+            height_m,
+            stretch: fibre.longest_m() / height_m.max(f32::MIN_POSITIVE),
+            slope: libm::tanf(fibre.shape.jitter_deg.to_radians()),
+            pattern: pattern.unwrap_or(Pattern { amplitude: 0.0, ..Pattern::default() }),
+            mean,
+            spread: mean * variation,
+            clump_spacing_m: spacing_m,
+            clump_strength: fibre.shape.clump.strength,
+        }
+    }
+
+    /// Share of the hairs that reach height `t`: lengths are normally distributed.
+    pub fn reaching(&self, t: f32) -> f32 {
+        if t > 1.0 {
+            return 0.0;
+        }
+        if self.spread < 1e-6 {
+            return f32::from(u8::from(t < self.mean));
+        }
+        0.5 * libm::erfcf((t - self.mean) / (self.spread * std::f32::consts::SQRT_2))
+    }
+
+    fn wavelength_m(&self) -> f32 {
+        self.pattern.wavelength * self.clump_spacing_m
+    }
+
+    /// Finest detail of [`Self::crowding`], m; infinite where there is none.
+    pub fn detail_m(&self) -> f32 {
+        let pattern = if self.pattern.amplitude > 0.0 { self.wavelength_m() } else { f32::INFINITY };
+        let clumps = if self.clump_strength > 0.0 { self.clump_spacing_m } else { f32::INFINITY };
+        0.2 * pattern.min(clumps)
+    }
+
+    /// Density over its mean at height `t` over the skin's point `root_m` with this normal.
+    ///
+    /// Clumps are cones: a hair at distance r from its clump's centre stands at r (1 − pull) at height t, so that what was
+    /// spread over the clump's cell crowds by 1/(1 − pull)² inside, and nothing is left outside.
+    pub fn crowding(&self, root_m: Vec3, normal: Vec3, t: f32, clump_factor: f32) -> f32 {
+        let mut factor = 1.0;
+        if self.pattern.amplitude > 0.0 {
+            let at = root_m / self.wavelength_m();
+            // A fine noise moves the coarse one about, more towards the tips.
+            let blur = self.pattern.jitter * t;
+            let moved = at + blur * Vec3::new(simplex(at * 4.0, 1), simplex(at * 4.0, 2), simplex(at * 4.0, 3));
+            factor += self.pattern.amplitude * simplex(if blur > 0.0 { moved } else { at }, 0);
+        }
+        let pull = (self.clump_strength * clump_factor * t * t.sqrt()).min(0.9);
+        if pull > 1e-3 {
+            let flat = |v: Vec3| v - normal * v.dot(normal);
+            let centre = root_m + flat(clump::to_centre_in_space(root_m, self.clump_spacing_m, 0));
+            let from = centre + (root_m - centre) / (1.0 - pull);
+            let own = from + flat(clump::to_centre_in_space(from, self.clump_spacing_m, 0));
+            let same = own.distance_squared(centre) < 1e-4 * self.clump_spacing_m * self.clump_spacing_m;
+            factor *= if same { 1.0 / ((1.0 - pull) * (1.0 - pull)) } else { 0.0 };
+        }
+        factor
+    }
+
+    /// Mean |sin∠(ω, t)| over the hairs' slopes, where the mean hair's is `sine`.
+    ///
+    /// The slope across the ray is normal in two dimensions, so its mean length is Rice's; √(s² + c σ²), with c between
+    /// π/2 and 1, is within 1 % of it.
+    pub fn mean_sine(&self, sine: f32) -> f32 {
+        let variance = self.slope * self.slope;
+        let s2 = sine * sine;
+        let c = 1.0 + 0.570_796 * variance / (variance + 0.434 * s2 + 1e-12);
+        // The slope is measured against the hair's height: steeper hairs are thinner by their cosine.
+        ((s2 + c * variance) / (1.0 + variance)).sqrt().min(1.0)
+    }
+}

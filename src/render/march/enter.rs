@@ -1,0 +1,94 @@
+//! Where rays enter the shell: the top of every prism, and its sides at open borders.
+
+use super::Start;
+use super::volume::Volume;
+use crate::math::Vec3;
+use crate::render::bins::{Bins, Grid};
+use crate::render::flat::{self, Flat};
+use crate::render::shell::prism::Place;
+use crate::render::view::View;
+use rayon::prelude::*;
+
+/// An outer face of the shell, as seen by a view.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    triangle: u32,
+    corners: [Place; 3],
+    camera_m: [Vec3; 3],
+}
+
+/// All places where a view's rays may enter the shell, by tile.
+#[derive(Debug)]
+pub struct Entrances {
+    faces: Vec<Face>,
+    bins: Bins,
+    /// Prisms that hold the eye.
+    around_eye: Vec<(u32, Place)>,
+}
+
+const TOP: [Place; 3] =
+    [Place { b: [0.0, 0.0], t: 1.0 }, Place { b: [1.0, 0.0], t: 1.0 }, Place { b: [0.0, 1.0], t: 1.0 }];
+
+impl Entrances {
+    /// Of the shell of `volume` for a view.
+    pub fn new(volume: &Volume<'_>, view: &View, grid: &Grid) -> Self {
+        let shell = volume.shell();
+        let triangles = shell.skin.triangles.len() as u32;
+        let faces: Vec<Face> = (0..triangles)
+            .into_par_iter()
+            .flat_map_iter(|triangle| {
+                let prism = shell.prism(triangle);
+                let camera = |place: Place| view.camera_from_world(prism.jacobian(&place).at_m);
+                let face = move |corners: [Place; 3]| Face { triangle, corners, camera_m: corners.map(camera) };
+                let borders = (0..3).filter(move |&c| shell.neighbours.beyond(triangle, c).is_none());
+                let walls = borders.flat_map(move |corner| {
+                    let foot = |i: usize| Place { t: 0.0, ..TOP[(corner + i) % 3] };
+                    let top = |i: usize| TOP[(corner + i) % 3];
+                    [face([foot(1), foot(2), top(2)]), face([foot(1), top(2), top(1)])]
+                });
+                let facing =
+                    |f: &Face| Flat::new(f.camera_m).faces_eye() || f.camera_m.iter().any(|p| p.z <= view.near_m);
+                std::iter::once(face(TOP)).chain(walls).filter(facing).collect::<Vec<_>>()
+            })
+            .collect();
+        let bins = Bins::new(grid, faces.len(), |i| flat::reach(view, &faces[i].camera_m));
+        let around_eye = (0..triangles)
+            .into_par_iter()
+            .filter_map(|triangle| {
+                let prism = shell.prism(triangle);
+                let (low, high) = prism.bounds_m();
+                if view.eye_m.cmplt(low).any() || view.eye_m.cmpgt(high).any() {
+                    return None;
+                }
+                let place = prism.locate(view.eye_m, Place { b: [1.0 / 3.0; 2], t: 0.5 })?;
+                let inside = place.barycentric().min_element() >= 0.0 && (0.0..=1.0).contains(&place.t);
+                inside.then_some((triangle, place))
+            })
+            .collect();
+        Self { faces, bins, around_eye }
+    }
+
+    /// The faces that reach into a tile.
+    pub fn of_tile(&self, tile: usize) -> impl Iterator<Item = (usize, [Vec3; 3])> {
+        self.bins.of(tile).iter().map(|&i| (i as usize, self.faces[i as usize].camera_m))
+    }
+
+    /// Whether rays start inside the shell.
+    pub fn around_eye(&self) -> impl Iterator<Item = Start> {
+        self.around_eye.iter().map(|&(triangle, place)| Start { at_m: 0.0, triangle, place })
+    }
+
+    /// The start of a march where a ray meets face `face` at `barycentric`, `at_m` from the eye.
+    pub fn start(&self, face: usize, barycentric: Vec3, at_m: f32) -> Start {
+        let Face { triangle, corners, .. } = self.faces[face];
+        let mean = |value: fn(&Place) -> f32| {
+            value(&corners[0]) * barycentric.x + value(&corners[1]) * barycentric.y + value(&corners[2]) * barycentric.z
+        };
+        Start { at_m, triangle, place: Place { b: [mean(|p| p.b[0]), mean(|p| p.b[1])], t: mean(|p| p.t) } }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.faces.len() * size_of::<Face>() + self.bins.bytes()
+    }
+}

@@ -1,0 +1,35 @@
+//! Sub-elements of a layer: a triangle split d times by joining its edges' middles (Andersen et al. 2016, eq. (1) to (3)).
+//!
+//! dist⊥(p, e_x) / dist⊥(p_x, e_x) is the barycentric coordinate b_x, so that eq. (1) reads i_x = ⌊(1 − b_x) 2^d⌋.
+
+use crate::math::Vec3;
+
+/// Index of the sub-element that holds barycentric coordinates `b` in a layer split `d` times, in 0 … 4^d − 1.
+///
+/// Points on a lattice line go to the row nearer to the edge opposite to corner 0, and within a row by what eq. (1) gives
+/// for corner 1; points outside the triangle to a sub-element on its rim.
+pub fn index(b: Vec3, d: u32) -> u32 {
+    let n = (1_u32 << d) as f32;
+    let clamped = |b: f32| ((1.0 - b) * n).clamp(0.0, n);
+    let (u0, u1) = (clamped(b.x), clamped(b.y));
+    let u2 = 2.0 * n - u0 - u1;
+    let last = (1_i32 << d) - 1;
+    let row = (u0 as i32).min(last);
+    let (i1, i2) = ((u1 as i32).min(last), (u2.clamp(0.0, n) as i32).min(last));
+    // Equation (2).
+    (row * (row + 1) + (i1 - i2).clamp(-row, row)) as u32
+}
+
+/// Barycentric coordinates of a sub-element's centre.
+pub fn centre(index: u32, d: u32) -> Vec3 {
+    let n = 1_i32 << d;
+    let i = index as i32;
+    let row = f64::from(index).sqrt() as i32;
+    let across = i - row * (row + 1);
+    // i₁ + i₂ is 2n − 1 − i₀ in sub-elements that point as the triangle does, one less in the others.
+    let upright = (across + 2 * n - 1 - row) % 2 == 0;
+    let sum = 2 * n - 1 - row - i32::from(!upright);
+    let rest = if upright { 1.0 / 3.0 } else { 2.0 / 3.0 };
+    let b = |i: i32| 1.0 - (i as f32 + rest) / n as f32;
+    Vec3::new(b(row), b((sum + across) / 2), b((sum - across) / 2))
+}
