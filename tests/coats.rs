@@ -111,7 +111,7 @@ fn shells(mut voxels: Vec<Vec<Voxel>>, size: u32, layers: u32, slab_m: f32, texe
         size,
         gains: vec![],
         slopes: vec![Vec2::ZERO; layers as usize],
-        extinction_scale_per_m: 0.0,
+        extinction_scales_per_m: vec![],
         albedo: vec![],
         medium: vec![],
         ends: vec![],
@@ -120,11 +120,9 @@ fn shells(mut voxels: Vec<Vec<Voxel>>, size: u32, layers: u32, slab_m: f32, texe
     let mut size = size;
     loop {
         let volume = texel_m * texel_m * slab_m;
-        if stack.medium.is_empty() {
-            let most = voxels.iter().flatten().map(|v| v.length_times_diameter).fold(0.0, f32::max);
-            stack.extinction_scale_per_m = most / volume;
-        }
-        let scale = stack.extinction_scale_per_m;
+        let most = voxels.iter().flatten().map(|v| v.length_times_diameter).fold(0.0, f32::max);
+        let scale = most / volume;
+        stack.extinction_scales_per_m.push(scale);
         let mut above = vec![0.0_f32; (size * size) as usize];
         let mut mips = (vec![], vec![], vec![]);
         for layer in voxels.iter().rev() {

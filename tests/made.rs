@@ -41,7 +41,7 @@ pub fn tile(seed: u64) -> Tile {
             size: 8,
             gains: (0..4).map(|mip| std::array::from_fn(|i| 1.0 + 0.01 * (mip * 9 + i) as f32)).collect(),
             slopes: (0..5).map(|i| Vec2::new(0.1 * i as f32, -0.05 * i as f32)).collect(),
-            extinction_scale_per_m: 250.0,
+            extinction_scales_per_m: vec![250.0; 4],
             albedo,
             medium,
             ends,
@@ -52,7 +52,7 @@ pub fn tile(seed: u64) -> Tile {
 
 /// A coat over every part: hair along the normals, a twentieth of the asset long.
 pub fn coat_for(asset: &Asset) -> Coat {
-    let mut coat = Coat { tiles: vec![tile(1), tile(2)], primitives: Vec::new() };
+    let mut coat = Coat { metres_per_unit: 1.0, tiles: vec![tile(1), tile(2)], primitives: Vec::new() };
     let length = 0.05 * asset.diagonal_units as f32;
     for (index, part) in asset.parts.iter().enumerate() {
         let mesh = part.mesh(1.0).expect("a part is sound");

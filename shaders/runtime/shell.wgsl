@@ -79,7 +79,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 
     let spot = footprint(uv_dx, uv_dy, run_through_slab(ray, slab_m, slopes[in.layer]));
     let layer = i32(in.layer);
-    let medium = decode_medium(fetch(medium_texture, in.uv, layer, spot));
+    let medium = decode_medium(fetch(medium_texture, in.uv, layer, spot), spot.level);
     // Ends count where the run is short, and colour varies little from hair to hair: one tap each.
     let ends = textureSampleLevel(ends_texture, hair_sampler, in.uv, layer, spot.round_level).r;
     if medium.extinction + ends == 0.0 {
@@ -102,7 +102,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     }
 
     // m, where there is enough hair for eight bits to tell; its length says how far the hairs agree.
-    let agreement = min(length(medium.tangent) / max(medium.extinction, 1e-3 * tile.extinction_scale_per_m), 1.0);
+    let agreement = min(length(medium.tangent) / max(medium.extinction, 1e-3), 1.0);
     let tangent = normalize(at.world_from_tile * (medium.tangent + vec3(0.0, 0.0, 1e-3))) * agreement;
     let hair = Hair(surface.rgb * in.tint.rgb, tangent, normal, -world_ray);
     let outside_depth = -log(max(surface.a, 1e-3)) * present;

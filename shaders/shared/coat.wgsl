@@ -13,13 +13,19 @@ struct Tile {
     edge_m: f32,
     // Height of the stack, m.
     height_m: f32,
-    // Extinction that a stored 1 stands for, 1/m.
-    extinction_scale_per_m: f32,
     // Texels along an edge of mip 0.
     size: f32,
     // Layers, the skin counted.
     layers: u32,
     mips: u32,
+    _pad0: u32,
+}
+
+struct Mip {
+    // Gains at GAIN_ANGLES.
+    gains: array<f32, 9>,
+    // 1 over the extinction that a stored 1 stands for, m.
+    inverse_scale_m: f32,
 }
 
 struct CoatVertex {
@@ -36,8 +42,7 @@ struct CoatVertex {
 @group(1) @binding(0) var<uniform> tile: Tile;
 // Per layer: mean slope of the hair, (dx, dy)/dz in tile axes.
 @group(1) @binding(1) var<storage, read> slopes: array<vec2<f32>>;
-// Per mip: gains at GAIN_ANGLES.
-@group(1) @binding(2) var<storage, read> gains: array<f32>;
+@group(1) @binding(2) var<storage, read> mips: array<Mip>;
 @group(1) @binding(3) var hair_sampler: sampler;
 @group(1) @binding(4) var albedo_texture: texture_2d_array<f32>;
 @group(1) @binding(5) var medium_texture: texture_2d_array<f32>;
@@ -84,9 +89,13 @@ struct Medium {
     tangent: vec3<f32>,
 }
 
-fn decode_medium(texel: vec4<f32>) -> Medium {
+// Between two mips the scales' harmonic mean: what is alike in both then stays as it is.
+fn decode_medium(texel: vec4<f32>, level: f32) -> Medium {
+    let mip = u32(level);
+    let next = min(mip + 1u, tile.mips - 1u);
+    let scale = 1.0 / mix(mips[mip].inverse_scale_m, mips[next].inverse_scale_m, fract(level));
     let tangent = (texel.yzw * 255.0 - 128.0) / 127.0;
-    return Medium(texel.x * tile.extinction_scale_per_m, tangent * tile.extinction_scale_per_m);
+    return Medium(texel.x * scale, tangent * scale);
 }
 
 // Optical depth that a ray along the unit vector `world` meets per metre of the tile's height. Hair keeps its diameter
@@ -151,13 +160,12 @@ fn run_through_slab(ray: Ray, slab_m: f32, slope: vec2<f32>) -> vec2<f32> {
 
 fn gain_of_mip(mip: u32, degrees: f32) -> f32 {
     var angles = GAIN_ANGLES;
-    let first = mip * 9u;
     for (var i = 1u; i < 9u; i++) {
         if degrees <= angles[i] {
-            return mix(gains[first + i - 1u], gains[first + i], (degrees - angles[i - 1u]) / (angles[i] - angles[i - 1u]));
+            return mix(mips[mip].gains[i - 1u], mips[mip].gains[i], (degrees - angles[i - 1u]) / (angles[i] - angles[i - 1u]));
         }
     }
-    return gains[first + 8u];
+    return mips[mip].gains[8];
 }
 
 // g(θ) of a level between two mips.

@@ -30,10 +30,13 @@ pub struct Row {
     pub rmse_constant: f32,
 }
 
+/// Edge of a pixel, in texels.
+const PIXEL: f32 = 15.0 / 16.0;
+
 /// How closely to look.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
-    /// Pixels along the edge of the square looked at, a multiple of 4; one pixel is one texel of mip 0.
+    /// Pixels along the edge of the square looked at, a multiple of 4; one pixel is 15/16 of a texel of mip 0.
     pub pixels: usize,
     /// Rays per pixel edge.
     pub supersampling: usize,
@@ -58,8 +61,8 @@ fn row(
     effort: Effort,
 ) -> Row {
     let n = effort.pixels;
-    let pixel = 1.0 / tile.shells.size as f32;
-    // The square looked at: n texels of the tile.
+    // Nearly a texel: pixels must not all sit on texels' middles, where filtering blurs nothing.
+    let pixel = PIXEL / tile.shells.size as f32;
     let edge_m = tile.edge_m * pixel * n as f32;
     let (mut truth, mut ours, mut constant) = (Vec::new(), Vec::new(), Vec::new());
     for direction in directions(theta_deg).step_by(2) {

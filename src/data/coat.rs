@@ -46,8 +46,9 @@ pub struct ShellStack {
     pub gains: Vec<[f32; 9]>,
     /// Per layer: mean slope (dx, dy)/dz of the hair in tile axes.
     pub slopes: Vec<Vec2>,
-    /// The extinction that a stored 1 stands for, 1/m.
-    pub extinction_scale_per_m: f32,
+    /// Per mip: the extinction that a stored 1 stands for, 1/m. A mip's own, so that eight bits still tell directions
+    /// where hair fills a hundredth of a texel.
+    pub extinction_scales_per_m: Vec<f32>,
     /// RGBA8 per mip and layer (`[mip][layer]`): straight albedo in sRGB coding, and in alpha the transmittance to the
     /// outside T₀ (linear), for rays with √(1 − (ω·m)²) = |cos θ|.
     pub albedo: Vec<Vec<Image8>>,

@@ -88,7 +88,7 @@ impl<'a> Stack<'a> {
             .map(|mip| {
                 (0..stack.layers as usize)
                     .map(|layer| {
-                        decode(&stack.medium[mip][layer], &stack.ends[mip][layer], stack.extinction_scale_per_m)
+                        decode(&stack.medium[mip][layer], &stack.ends[mip][layer], stack.extinction_scales_per_m[mip])
                     })
                     .collect()
             })

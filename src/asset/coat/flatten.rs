@@ -58,7 +58,7 @@ fn opacity(stack: &ShellStack, slab: usize, texel: usize, gain: f32, thickness_m
     let medium = &stack.medium[0][slab].pixels[4 * texel..][..4];
     let signed = |byte: u8| (f32::from(byte) - 128.0) / 127.0;
     let medium = Vec4::new(f32::from(medium[0]) / 255.0, signed(medium[1]), signed(medium[2]), signed(medium[3]))
-        * stack.extinction_scale_per_m;
+        * stack.extinction_scales_per_m[0];
     // Byte 255 stands for an end that hides all; ½ a step less keeps the logarithm finite.
     let kappa = -libm::logf(1.0 - f32::from(stack.ends[0][slab].pixels[texel]).min(254.5) / 255.0);
     let angle = VIEW_DEG.to_radians();

@@ -34,7 +34,7 @@ pub fn write(document: &mut Document, tile: &Tile) -> Result<Value> {
         "shells": {
             "layers": shells.layers,
             "size": shells.size,
-            "extinctionScale": f64::from(shells.extinction_scale_per_m),
+            "extinctionScales": numbers(&shells.extinction_scales_per_m),
             "gainAngles": numbers(&GAIN_ANGLES_DEG),
             "gains": shells.gains.iter().map(|g| numbers(g)).collect::<Vec<_>>(),
             "slopes": shells.slopes.iter().map(|s| numbers(&s.to_array())).collect::<Vec<_>>(),
@@ -79,7 +79,13 @@ pub fn read(document: &Document, at: &At<'_>) -> Result<Tile> {
     let slopes = slopes.iter().map(|s| s.numbers::<2>().map(|n| Vec2::new(n[0] as f32, n[1] as f32)));
     let albedo = array("albedo", Format::Rgba8Srgb)?;
     let slopes = slopes.collect::<Result<Vec<_>>>()?;
-    if gains.len() != albedo.len() || slopes.len() != albedo[0].len() || albedo[0].len() < 2 {
+    let scales = shells.list("extinctionScales")?;
+    let scales = scales.iter().map(|s| Ok(s.number()? as f32)).collect::<Result<Vec<_>>>()?;
+    if gains.len() != albedo.len()
+        || scales.len() != albedo.len()
+        || slopes.len() != albedo[0].len()
+        || albedo[0].len() < 2
+    {
         return Err(shells.need("gains")?.fault("one row per mip, one slope per layer, and at least 2 layers"));
     }
     Ok(Tile {
@@ -91,7 +97,7 @@ pub fn read(document: &Document, at: &At<'_>) -> Result<Tile> {
             size: albedo[0][0].width,
             gains,
             slopes,
-            extinction_scale_per_m: float(&shells, "extinctionScale")?,
+            extinction_scales_per_m: scales,
             medium: array("medium", Format::Rgba8)?,
             ends: array("ends", Format::R8)?,
             albedo,

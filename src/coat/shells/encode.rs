@@ -37,14 +37,13 @@ pub struct Raw<'a> {
 pub fn encode(raw: &Raw<'_>) -> ShellStack {
     let voxels = raw.voxels;
     let size = voxels.size;
-    let scale = voxels.extinction.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
     let mut layers: Vec<Vec<Texel>> = vec![
         raw.skin_transmittance
             .iter()
             .map(|&transmittance| Texel {
-                extinction: scale,
-                tangent: Vec3::Z * scale,
-                colour: raw.skin * scale,
+                extinction: 1.0,
+                tangent: Vec3::Z,
+                colour: raw.skin,
                 ends: 1.0,
                 transmittance,
             })
@@ -70,7 +69,7 @@ pub fn encode(raw: &Raw<'_>) -> ShellStack {
         size: size as u32,
         gains: Vec::new(),
         slopes,
-        extinction_scale_per_m: scale,
+        extinction_scales_per_m: Vec::new(),
         albedo: Vec::new(),
         medium: Vec::new(),
         ends: Vec::new(),
@@ -79,7 +78,10 @@ pub fn encode(raw: &Raw<'_>) -> ShellStack {
     let colours: Vec<Vec<Vec<Vec3>>> = pyramids.iter().map(|p| dilated(p)).collect();
     for mip in 0..pyramids[0].len() {
         let level = |f: &dyn Fn(usize) -> Image8| (0..pyramids.len()).map(f).collect::<Vec<_>>();
+        let hair = pyramids[1..].iter().flat_map(|pyramid| &pyramid[mip]);
+        let scale = hair.map(|t| t.extinction).fold(f32::MIN_POSITIVE, f32::max);
         stack.gains.push([1.0; 9]);
+        stack.extinction_scales_per_m.push(scale);
         stack.albedo.push(level(&|layer| code_albedo(&pyramids[layer][mip], &colours[layer][mip])));
         stack.medium.push(level(&|layer| code_medium(&pyramids[layer][mip], scale)));
         stack.ends.push(level(&|layer| code_ends(&pyramids[layer][mip])));

@@ -13,7 +13,7 @@ const AZIMUTHS: usize = 8;
 /// Rays along a tile's edge per direction.
 const RAYS: usize = 40;
 /// Places along a tile's edge where the stack is evaluated, per direction.
-const SPOTS: u32 = 24;
+const SPOTS: usize = 24;
 /// Bounds of a gain: outside, texels too coarse to tell are at fault, not the law.
 const BOUNDS: (f32, f32) = (0.1, 4.0);
 /// Mean transmittance below which its ratio says nothing.
@@ -29,6 +29,11 @@ pub fn directions(theta_deg: f32) -> impl Iterator<Item = Vec3> {
     })
 }
 
+/// `n`, or more where there is one direction alone, so that every angle is judged at about as many places.
+fn along_edge(theta_deg: f32, n: usize) -> usize {
+    if theta_deg == 0.0 { 3 * n } else { n }
+}
+
 /// Mean transmittance at each of [`GAIN_ANGLES_DEG`] (in the tile) of strands worn under `skin_from_tile`, which reach
 /// up to `top_m` there.
 pub fn strand_transmittance(scene: Scene<'_>, edge_m: f32, top_m: f32, skin_from_tile: Mat3) -> [f64; 9] {
@@ -42,7 +47,8 @@ pub fn strand_transmittance(scene: Scene<'_>, edge_m: f32, top_m: f32, skin_from
         let each: Vec<f64> = directions(theta)
             .map(|in_tile| (skin_from_tile * in_tile).normalize())
             .map(|direction| {
-                let rays = Rays::Tile { edge_m, top_m, direction, size: [RAYS, RAYS], supersampling: 1 };
+                let n = along_edge(theta, RAYS);
+                let rays = Rays::Tile { edge_m, top_m, direction, size: [n, n], supersampling: 1 };
                 let far_m = top_m / -direction.z;
                 caster.mean_transmittance(&rays, DepthRange { near_m: 0.0, far_m })
             })
@@ -75,7 +81,7 @@ pub fn fit(tile: &Tile, truth: &[f64; 9], skin_from_tile: Mat3) -> Vec<[f32; 9]>
 
 /// Ungained optical depths seen through pixels as large as a texel of the mip with `size` texels.
 fn optical_depths(stack: &Stack<'_>, size: u32, theta_deg: f32, skin_from_tile: Mat3) -> Vec<f32> {
-    let n = size.clamp(8, SPOTS) as usize;
+    let n = along_edge(theta_deg, (size as usize).clamp(8, SPOTS));
     let views: Vec<View> = directions(theta_deg)
         .map(|in_tile| View {
             direction: (skin_from_tile * in_tile).normalize(),

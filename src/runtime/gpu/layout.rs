@@ -58,14 +58,31 @@ pub struct TileUniform {
     pub edge_m: f32,
     /// Height of the stack, m.
     pub height_m: f32,
-    /// Extinction that a stored 1 stands for, 1/m.
-    pub extinction_scale_per_m: f32,
     /// Texels along an edge.
     pub size: f32,
     /// Layers, the skin counted.
     pub layers: u32,
     /// Mips.
     pub mips: u32,
+    pub(super) _pad0: u32,
+}
+
+/// `Mip` of `shared/coat.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Mip {
+    /// Gains at the stored angles.
+    pub gains: [f32; 9],
+    /// 1 over the extinction that a stored 1 stands for, m.
+    pub inverse_scale_m: f32,
+}
+
+impl Mip {
+    /// The mips of `tile`.
+    pub fn of(tile: &Tile) -> Vec<Self> {
+        let mips = tile.shells.gains.iter().zip(&tile.shells.extinction_scales_per_m);
+        mips.map(|(&gains, scale_per_m)| Self { gains, inverse_scale_m: 1.0 / scale_per_m }).collect()
+    }
 }
 
 impl TileUniform {
@@ -74,10 +91,10 @@ impl TileUniform {
         Self {
             edge_m: tile.edge_m,
             height_m: tile.height_m,
-            extinction_scale_per_m: tile.shells.extinction_scale_per_m,
             size: tile.shells.size as f32,
             layers: tile.shells.layers,
             mips: tile.shells.albedo.len() as u32,
+            _pad0: 0,
         }
     }
 }

@@ -249,7 +249,7 @@ fn bare_tile() -> Tile {
             size: 1,
             gains: vec![[1.0; 9]],
             slopes: vec![Vec2::ZERO; 2],
-            extinction_scale_per_m: 1.0,
+            extinction_scales_per_m: vec![1.0],
             albedo: texel(4),
             medium: texel(4),
             ends: texel(1),

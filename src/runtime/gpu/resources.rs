@@ -1,6 +1,6 @@
 //! What a picture needs on the device: tiles once, geometry per frame.
 
-use super::layout::{CoatVertex, FinInstance, SkinVertex, TileUniform};
+use super::layout::{CoatVertex, FinInstance, Mip, SkinVertex, TileUniform};
 use super::pipelines::Layouts;
 use crate::asset::material::Wrap;
 use crate::data::coat::Tile;
@@ -72,7 +72,7 @@ impl GpuTile {
         let uniform = gpu.buffer("tile", &[TileUniform::new(tile)], wgpu::BufferUsages::UNIFORM);
         let slopes: Vec<[f32; 2]> = shells.slopes.iter().map(|slope| slope.to_array()).collect();
         let slopes = gpu.buffer("slopes", &slopes, wgpu::BufferUsages::STORAGE);
-        let gains = gpu.buffer("gains", &shells.gains, wgpu::BufferUsages::STORAGE);
+        let mips = gpu.buffer("mips", &Mip::of(tile), wgpu::BufferUsages::STORAGE);
         let hair_sampler = sampler(gpu, [Wrap::Repeat; 2], 1);
         let group = bind(
             gpu,
@@ -80,7 +80,7 @@ impl GpuTile {
             &[
                 uniform.as_entire_binding(),
                 slopes.as_entire_binding(),
-                gains.as_entire_binding(),
+                mips.as_entire_binding(),
                 wgpu::BindingResource::Sampler(&hair_sampler),
                 view(&albedo),
                 view(&medium),
