@@ -3,6 +3,9 @@
 use crate::architecture::breaches;
 use crate::docs::first_difference;
 use crate::laws::shading::furnace;
+use crate::metrics::{changed, picture};
+use furrier::math::Vec3;
+use furrier::metrics::compare::compare;
 use furrier::shade::kajiya_kay::KajiyaKay;
 
 fn breaches_of(path: &str, text: &str) -> Vec<String> {
@@ -77,5 +80,33 @@ fn one_percent_of_depth_tells_hair_a_fortieth_thicker() {
             crate::undercoat::depth_of_volume(&thicker, direction),
         );
         assert!((b - a).abs() > 0.01 * a, "{a} and {b} along {direction}");
+fn every_measure_sees_its_fault() {
+    let of = |other| compare(&picture(), &other).unwrap();
+    let darker = of(changed(|c| c * 0.95));
+    assert!(darker.bias < -0.04 && darker.rel_mse > 1e-3 && darker.psnr_db.unwrap() < 45.0 && darker.flip > 0.01);
+    let redder = of(changed(|c| c * Vec3::new(1.2, 1.0, 0.8)));
+    assert!(redder.flip > 0.02 && redder.flip_p95 > redder.flip);
+    // The same pixels in another order: means agree, structure does not.
+    let mut mirrored = picture();
+    mirrored.colour.reverse();
+    mirrored.alpha.reverse();
+    let mirrored = of(mirrored);
+    assert!(mirrored.bias.abs() < 1e-6 && mirrored.ssim < 0.9 && mirrored.flip > 0.05);
+    let mut thinner = picture();
+    thinner.alpha.iter_mut().for_each(|a| *a *= 0.9);
+    let thinner = of(thinner);
+    assert!((thinner.coverage[1] / thinner.coverage[0] - 0.9).abs() < 1e-6);
+}
+
+#[test]
+fn a_struct_out_of_step_with_its_shader_shows() {
+    use crate::shaders::{Layout, in_shader};
+    let parse = |text: &str| naga::front::wgsl::parse_str(text).unwrap();
+    let uses = "@group(0) @binding(0) var<uniform> s: S; @compute @workgroup_size(1) fn main() { _ = s.b; }";
+    let rust = Layout { fields: vec![("a".into(), 0), ("b".into(), 12)], size: 16 };
+    assert_eq!(in_shader(&parse(&format!("struct S {{ a: vec3<f32>, b: f32 }} {uses}")), "S"), Some(rust));
+    let rust = Layout { fields: vec![("a".into(), 0), ("b".into(), 12)], size: 16 };
+    for fault in ["a: vec3<f32>, b: vec2<f32>", "b: f32, a: vec3<f32>", "a: vec3<f32>, c: f32, b: f32"] {
+        assert_ne!(in_shader(&parse(&format!("struct S {{ {fault} }} {uses}")), "S").as_ref(), Some(&rust), "{fault}");
     }
 }

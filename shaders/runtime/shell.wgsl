@@ -1,13 +1,17 @@
-// Shells: slab after slab of the coat, each drawn at its middle height.
+// Shells: slab after slab of the coat. Each is drawn at its top, so that its outline is where the hair's is, and fetched
+// where the ray passes its middle.
 #import furrier::view::{view, ray_direction}
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
 #import furrier::coat::{CoatVertex, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, frame, ray_in_tile,
-    lateral, footprint, fetch, run_through_slab, gain, decode_medium, fin_share}
+    lateral, path_through_slab, footprint, fetch, run_through_slab, gain, decode_medium, fin_share}
 
 // Which side of the shells this pass draws: the far one first, outer to inner, then the near one, inner to outer.
 override NEAR_SIDE: bool = true;
 // Whether fins are drawn too and take their share.
 override WITH_FINS: bool = true;
+// As graphics hardware does at most; the far side lies behind the near one and can do with less.
+const NEAR_TAPS: f32 = 16.0;
+const FAR_TAPS: f32 = 4.0;
 // An opacity that no eight-bit picture shows; writing depth for it would hide hair behind it.
 const INVISIBLE: f32 = 0.002;
 
@@ -24,7 +28,10 @@ struct Varyings {
     // What one metre of the tile becomes on this triangle at this height.
     @location(5) @interpolate(flat) x_axis: vec3<f32>,
     @location(6) @interpolate(flat) y_axis: vec3<f32>,
-    @location(7) @interpolate(flat) layer: u32,
+    // What the normal changes by along them, 1/m.
+    @location(7) @interpolate(flat) x_turn: vec3<f32>,
+    @location(8) @interpolate(flat) y_turn: vec3<f32>,
+    @location(9) @interpolate(flat) layer: u32,
 }
 
 @vertex
@@ -33,7 +40,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
     let a = vertices[indices[first]];
     let b = vertices[indices[first + 1u]];
     let c = vertices[indices[first + 2u]];
-    let height = (f32(layer) - 0.5) / f32(tile.layers - 1u);
+    let height = f32(layer) / f32(tile.layers - 1u);
     let at_a = a.position_m + height * a.offset_m;
     let edge_b = b.position_m + height * b.offset_m - at_a;
     let edge_c = c.position_m + height * c.offset_m - at_a;
@@ -53,6 +60,10 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
     out.tint = own.tint;
     out.x_axis = (edge_b * uv_c.y - edge_c * uv_b.y) * scale;
     out.y_axis = (edge_c * uv_b.x - edge_b * uv_c.x) * scale;
+    let turn_b = b.normal - a.normal;
+    let turn_c = c.normal - a.normal;
+    out.x_turn = (turn_b * uv_c.y - turn_c * uv_b.y) * scale;
+    out.y_turn = (turn_c * uv_b.x - turn_b * uv_c.x) * scale;
     out.layer = layer;
 
     // Which side is seen follows from the offsets, not from the winding, so mirrored parts need no care.
@@ -72,26 +83,38 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let uv_dx = dpdx(in.uv);
     let uv_dy = dpdy(in.uv);
     let length_factor = length(in.offset_m) / tile.height_m;
-    let at = frame(in.x_axis, in.y_axis, in.offset_m / tile.height_m);
+    let normal = normalize(in.normal);
+    // Axes in the plane of the smooth normal, or facets would show.
+    let x_axis = in.x_axis - normal * dot(normal, in.x_axis);
+    let y_axis = in.y_axis - normal * dot(normal, in.y_axis);
+    let at = frame(x_axis, y_axis, in.offset_m / tile.height_m);
     let world_ray = ray_direction(in.position_m);
     let ray = ray_in_tile(at, world_ray);
     let slab_m = tile.height_m / f32(tile.layers - 1u);
 
-    let spot = footprint(uv_dx, uv_dy, run_through_slab(ray, slab_m, slopes[in.layer]));
+    // The surface bends away from the ray by half its normal curvature along it, measured in metres of the tile.
+    let sideways = x_axis * ray.direction.x + y_axis * ray.direction.y;
+    let turn = in.x_turn * ray.direction.x + in.y_turn * ray.direction.y;
+    let bend_per_m = 0.5 * dot(turn, sideways) / max(dot(normal, at.world_from_tile[2]), 0.05);
+    let path_m = path_through_slab(ray, slab_m, bend_per_m);
+    let inwards = select(-0.5, 0.5, NEAR_SIDE) * path_m;
+    let uv = in.uv + inwards * ray.direction.xy / tile.edge_m;
+
+    let run = run_through_slab(ray, path_m, slab_m, slopes[in.layer]);
+    let spot = footprint(uv_dx, uv_dy, run, select(FAR_TAPS, NEAR_TAPS, NEAR_SIDE));
     let layer = i32(in.layer);
-    let medium = decode_medium(fetch(medium_texture, in.uv, layer, spot), spot.level);
+    let medium = decode_medium(fetch(medium_texture, uv, layer, spot), spot.level);
     // Ends count where the run is short, and colour varies little from hair to hair: one tap each.
-    let ends = textureSampleLevel(ends_texture, hair_sampler, in.uv, layer, spot.round_level).r;
+    let ends = textureSampleLevel(ends_texture, hair_sampler, uv, layer, spot.round_level).r;
     if medium.extinction + ends == 0.0 {
         discard;
     }
-    let surface = textureSampleLevel(albedo_texture, hair_sampler, in.uv, layer, spot.round_level);
+    let surface = textureSampleLevel(albedo_texture, hair_sampler, uv, layer, spot.round_level);
 
     // τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], model e of docs/steps/shells.md; g by the pixel's own mip.
-    let through = slab_m * lateral(at, world_ray, ray, medium);
-    let end_depth = -log(max(1.0 - ends, 1e-3));
-    let gained = gain(footprint(uv_dx, uv_dy, vec2(0.0)).level, ray.cosine);
-    let normal = normalize(in.normal);
+    let through = path_m * lateral(at, world_ray, medium);
+    let end_depth = -log(max(1.0 - ends, 1e-3)) * min(1.0, path_m * ray.fall / slab_m);
+    let gained = gain(footprint(uv_dx, uv_dy, vec2(0.0), NEAR_TAPS).level, ray.cosine);
     let kept = select(1.0, 1.0 - fin_share(dot(normal, world_ray)), WITH_FINS);
     // Skin without hair has offsets of length 0; the last hundredth fades.
     let present = in.tint.w * smoothstep(0.0, 0.01, length_factor);
@@ -110,7 +133,8 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     for (var i = 0u; i < view.light_count; i++) {
         let light = view.lights[i];
         let light_ray = ray_in_tile(at, light.to_light);
-        let shadow = exp(-outside_depth * lateral(at, light.to_light, light_ray, medium) / max(medium.extinction, 1e-3));
+        let slant = lateral(at, light.to_light, medium) / (abs(light_ray.direction.z) * max(medium.extinction, 1e-3));
+        let shadow = exp(-outside_depth * slant);
         let seen = above_horizon(dot(normal, light.to_light));
         radiance += seen * light.irradiance * scattered(hair, light.to_light, shadow, multiply_scattered(shadow, hair.albedo));
     }

@@ -5,8 +5,6 @@ const PI: f32 = 3.14159265;
 const GAIN_ANGLES: array<f32, 9> = array(0.0, 10.0, 22.0, 35.0, 48.0, 60.0, 70.0, 79.0, 86.0);
 // cos 87 degrees: past it a slab is no longer a plane.
 const MIN_COS: f32 = 0.052;
-// What graphics hardware does at most.
-const MAX_TAPS: f32 = 16.0;
 
 struct Tile {
     // Length that one unit of UV stands for, m.
@@ -72,13 +70,15 @@ struct Ray {
     direction: vec3<f32>,
     // |cos θ| between it and the tile's z axis.
     cosine: f32,
+    // |z| as it really is.
+    fall: f32,
 }
 
 fn ray_in_tile(at: Frame, world: vec3<f32>) -> Ray {
     let direction = at.tile_from_world * world;
     let size = length(direction);
     let z = max(abs(direction.z), MIN_COS * size);
-    return Ray(vec3(direction.xy, select(-z, z, direction.z >= 0.0)), z / size);
+    return Ray(vec3(direction.xy, select(-z, z, direction.z >= 0.0)), z / size, abs(direction.z));
 }
 
 // What a texel of the medium holds.
@@ -98,17 +98,28 @@ fn decode_medium(texel: vec4<f32>, level: f32) -> Medium {
     return Medium(texel.x * scale, tangent * scale);
 }
 
-// Optical depth that a ray along the unit vector `world` meets per metre of the tile's height. Hair keeps its diameter
-// under the frame M: it becomes |M m̂| times as long in a volume det M times as large, and the ray runs 1/|d.z| metres
-// per metre of height. For M = 1 this is A·sqrt(1 - (ω·m)²)/|cos θ|.
-fn lateral(at: Frame, world: vec3<f32>, ray: Ray, medium: Medium) -> f32 {
+// Extinction that a ray along the unit vector `world` meets, 1/m of the ray. Hair keeps its diameter under the frame M: it
+// becomes |M m̂| times as long in a volume det M times as large. For M = 1 this is A·sqrt(1 - (ω·m)²).
+fn lateral(at: Frame, world: vec3<f32>, medium: Medium) -> f32 {
     let size = length(medium.tangent);
     var stretched = medium.extinction;
     if size > 0.0 {
         stretched *= length(at.world_from_tile * (medium.tangent / size));
     }
     let along = dot(world, at.world_from_tile * medium.tangent);
-    return sqrt(max(0.0, stretched * stretched - along * along)) / (at.volume * abs(ray.direction.z));
+    return sqrt(max(0.0, stretched * stretched - along * along)) / at.volume;
+}
+
+// How far a ray runs through a slab, m, from where it enters by the slab's top to where it leaves by the bottom or, on
+// a surface that bends away from it, turns upwards again. The height over the bottom, in metres of the tile, is
+// slab - |d.z| s + bend s² after s metres.
+fn path_through_slab(ray: Ray, slab_m: f32, bend_per_m: f32) -> f32 {
+    let fall = abs(ray.direction.z);
+    let discriminant = fall * fall - 4.0 * bend_per_m * slab_m;
+    if discriminant < 0.0 {
+        return ray.fall / (2.0 * bend_per_m);
+    }
+    return 2.0 * slab_m / (fall + sqrt(discriminant));
 }
 
 // A fetch along a line: taps of one level, evenly spread, as anisotropic samplers do. Done by hand because what drivers do
@@ -123,8 +134,8 @@ struct Footprint {
 }
 
 // The ellipse of a pixel with derivatives `uv_dx`, `uv_dy`, widened by `run`: Σ_pixel + run runᵀ. Taps lie along its major
-// axis, a minor axis apart.
-fn footprint(uv_dx: vec2<f32>, uv_dy: vec2<f32>, run: vec2<f32>) -> Footprint {
+// axis, a minor axis apart, at most `max_taps`.
+fn footprint(uv_dx: vec2<f32>, uv_dy: vec2<f32>, run: vec2<f32>, max_taps: f32) -> Footprint {
     let a = uv_dx.x * uv_dx.x + uv_dy.x * uv_dy.x + run.x * run.x;
     let b = uv_dx.x * uv_dx.y + uv_dy.x * uv_dy.y + run.x * run.y;
     let c = uv_dx.y * uv_dx.y + uv_dy.y * uv_dy.y + run.y * run.y;
@@ -138,7 +149,7 @@ fn footprint(uv_dx: vec2<f32>, uv_dy: vec2<f32>, run: vec2<f32>) -> Footprint {
     let vector = select(vec2(b, half_gap - d), vec2(half_gap + d, b), d >= 0.0);
     let size = length(vector);
     let axis = select(vec2(1.0, 0.0), vector / size, size > 1e-20);
-    let taps = clamp(ceil(major / minor - 1e-3), 1.0, MAX_TAPS);
+    let taps = clamp(ceil(major / minor - 1e-3), 1.0, max_taps);
     let level = clamp(log2(max(major, minor) / taps * tile.size), 0.0, f32(tile.mips - 1u));
     let round_level = clamp(log2(sqrt(max(major, minor) * minor) * tile.size), 0.0, f32(tile.mips - 1u));
     return Footprint(axis * max(major - minor, 0.0), taps, level, round_level);
@@ -154,8 +165,8 @@ fn fetch(texture: texture_2d_array<f32>, uv: vec2<f32>, layer: i32, spot: Footpr
 }
 
 // The ray's sideways run through a slab against the hair's own slope k, in UV.
-fn run_through_slab(ray: Ray, slab_m: f32, slope: vec2<f32>) -> vec2<f32> {
-    return slab_m * (ray.direction.xy / ray.direction.z - slope) / tile.edge_m;
+fn run_through_slab(ray: Ray, path_m: f32, slab_m: f32, slope: vec2<f32>) -> vec2<f32> {
+    return (sign(ray.direction.z) * path_m * ray.direction.xy - slab_m * slope) / tile.edge_m;
 }
 
 fn gain_of_mip(mip: u32, degrees: f32) -> f32 {

@@ -1,0 +1,101 @@
+//! Every shader parses and validates, and its structs lie in memory as Rust's do. Needs no adapter.
+
+use furrier::gpu::{Source, compose};
+use furrier::runtime::gpu::layout::{CoatVertex, FinInstance, LightUniform, SkinVertex, TileUniform, ViewUniform};
+use furrier::runtime::gpu::pipelines::{FIN, RESOLVE, SHARED, SHELL, SKIN};
+use naga::proc::Layouter;
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{Module, TypeInner};
+use std::mem::offset_of;
+
+/// A struct as one side sees it: (name, offset) of each field, and size of the whole.
+#[derive(Debug, PartialEq)]
+pub struct Layout {
+    pub fields: Vec<(String, usize)>,
+    pub size: usize,
+}
+
+/// The struct called `name` in a shader; composition adds the file to its name.
+pub fn in_shader(module: &Module, name: &str) -> Option<Layout> {
+    let plain = |full: &str| full.split("X_naga_oil_mod_X").next().unwrap_or_default().to_owned();
+    module.types.iter().find_map(|(_, ty)| match &ty.inner {
+        TypeInner::Struct { members, span } if ty.name.as_deref().map(plain).as_deref() == Some(name) => Some(Layout {
+            fields: members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize)).collect(),
+            size: *span as usize,
+        }),
+        _ => None,
+    })
+}
+
+macro_rules! in_rust {
+    ($ty:ty { $($field:ident),* }) => {
+        Layout { fields: vec![$((stringify!($field).to_owned(), offset_of!($ty, $field))),*], size: size_of::<$ty>() }
+    };
+}
+
+fn module(source: Source) -> Module {
+    compose(source, &SHARED).unwrap()
+}
+
+#[test]
+fn every_shader_is_valid() {
+    for source in [SKIN, SHELL, FIN, RESOLVE] {
+        let module = module(source);
+        let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
+        validator.validate(&module).unwrap_or_else(|error| panic!("{}: {error:?}", source.path));
+        for stage in ["vertex", "fragment"] {
+            assert!(module.entry_points.iter().any(|entry| entry.name == stage), "{}: {stage}", source.path);
+        }
+    }
+}
+
+#[test]
+fn every_shader_file_is_tested() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+    let tested: Vec<_> =
+        [SKIN, SHELL, FIN, RESOLVE].iter().chain(&SHARED).map(|source| source.path.to_owned()).collect();
+    for kind in ["runtime", "shared"] {
+        for entry in std::fs::read_dir(folder.join(kind)).unwrap() {
+            let path = format!("{kind}/{}", entry.unwrap().file_name().to_string_lossy());
+            assert!(tested.contains(&path), "shaders/{path} is not among the tested ones");
+        }
+    }
+}
+
+#[test]
+fn structs_lie_as_in_rust() {
+    let (shell, fin) = (module(SHELL), module(FIN));
+    for (module, name, rust) in [
+        (&shell, "Light", in_rust!(LightUniform { to_light, irradiance })),
+        (&shell, "View", in_rust!(ViewUniform { clip_from_world, eye, ambient, light_count, lights })),
+        (&shell, "Tile", in_rust!(TileUniform { edge_m, height_m, extinction_scale_per_m, size, layers, mips })),
+        (&shell, "CoatVertex", in_rust!(CoatVertex { position_m, u, offset_m, v, normal, tint })),
+        (&fin, "FinEdge", in_rust!(FinInstance { ends, u, thickness })),
+    ] {
+        assert_eq!(in_shader(module, name), Some(rust), "{name}");
+    }
+}
+
+#[test]
+fn vertex_attributes_lie_as_in_rust() {
+    let module = module(SKIN);
+    let entry = module.entry_points.iter().find(|entry| entry.name == "vertex").unwrap();
+    let mut layouter = Layouter::default();
+    layouter.update(module.to_ctx()).unwrap();
+    let mut offset = 0;
+    for (argument, attribute) in entry.function.arguments.iter().zip(SkinVertex::ATTRIBUTES) {
+        assert_eq!(argument.binding.as_ref().map(location), Some(attribute.shader_location), "{:?}", argument.name);
+        assert_eq!(u64::from(offset), attribute.offset, "{:?}", argument.name);
+        assert_eq!(u64::from(layouter[argument.ty].size), attribute.format.size(), "{:?}", argument.name);
+        offset += layouter[argument.ty].size;
+    }
+    assert_eq!(entry.function.arguments.len(), SkinVertex::ATTRIBUTES.len());
+    assert_eq!(offset as usize, size_of::<SkinVertex>());
+}
+
+fn location(binding: &naga::Binding) -> u32 {
+    match binding {
+        naga::Binding::Location { location, .. } => *location,
+        naga::Binding::BuiltIn(_) => u32::MAX,
+    }
+}
