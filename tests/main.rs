@@ -26,5 +26,6 @@ mod ribbons;
 mod runtime;
 mod silhouette;
 mod twins;
+mod validator;
 mod undercoat;
 mod viewer;
