@@ -52,7 +52,7 @@ pub fn tile(seed: u64) -> Tile {
 
 /// A coat over every part: hair along the normals, a twentieth of the asset long.
 pub fn coat_for(asset: &Asset) -> Coat {
-    let mut coat = Coat { metres_per_unit: 1.0, tiles: vec![tile(1), tile(2)], primitives: Vec::new() };
+    let mut coat = Coat { metres_per_unit: 0.5, tiles: vec![tile(1), tile(2)], primitives: Vec::new() };
     let length = 0.05 * asset.diagonal_units as f32;
     for (index, part) in asset.parts.iter().enumerate() {
         let mesh = part.mesh(1.0).expect("a part is sound");

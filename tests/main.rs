@@ -28,5 +28,6 @@ mod runtime;
 mod shaders;
 mod silhouette;
 mod twins;
+mod validator;
 mod undercoat;
 mod viewer;
