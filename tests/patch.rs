@@ -5,7 +5,7 @@ use crate::meshes;
 use furrier::data::mesh::Mesh;
 use furrier::data::patches::Patches;
 use furrier::fur::field::{FieldSource, directions};
-use furrier::fur::patch::{Parameterisation, parameterise, uv_usable};
+use furrier::fur::patch::{Parameterisation, measure_seams, parameterise, uv_usable};
 use furrier::math::{Vec2, Vec3};
 
 const ATLAS: Parameterisation = Parameterisation::Atlas { texels_per_tile: 128, padding_texels: 4 };
@@ -155,6 +155,188 @@ fn lapped_patches_cover_every_shared_mesh_and_lie_flat() {
             if path.ends_with("bunny_5k.glb") {
                 assert!(s.patches <= 300, "{s:?}");
             }
+        }
+    }
+}
+
+/// Tests of growth on meshes without shared files: what must hold on any of them.
+fn grows_well(mesh: &Mesh, comb: &[Vec3]) -> Patches {
+    let patches = parameterise(mesh, comb, mesh.diagonal_m().max(1e-30) / 20.0, LAPPED).expect("patches");
+    covers(mesh, &patches).expect("covered");
+    assert_eq!(patches.stats.mirrored_m2, 0.0, "{:?}", patches.stats);
+    patches
+}
+
+#[test]
+fn lapped_patches_grow_on_any_surface() {
+    let one = meshes::mesh(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]]);
+    assert_eq!(grows_well(&one, &[Vec3::X; 3]).stats.patches, 1);
+    // Combed along +y: u is y, and v is −x.
+    let combed = grows_well(&one, &[Vec3::Y; 3]);
+    let [a, b, c] = combed.triangles[0].map(|v| combed.uv[v as usize]);
+    let tiles = 20.0 / one.diagonal_m();
+    assert!((c - a - Vec2::new(tiles, 0.0)).length() < 1e-4 && (b - a - Vec2::new(0.0, -tiles)).length() < 1e-4);
+
+    for mesh in [meshes::sphere(12, 0.1), meshes::torus(12, [1.0, 0.4]), meshes::moebius(60), meshes::plane(20, 3.0)] {
+        let comb = directions(&mesh, &[FieldSource::Tailward { sag: 0.3 }]).expect("a comb").direction;
+        let stats = grows_well(&mesh, &comb).stats;
+        assert!(stats.within > 0.95 && stats.field_angle_rad < 0.17, "{stats:?}");
+    }
+    // Without any comb patches still lie flat.
+    let sphere = meshes::sphere(12, 0.1);
+    let stats = grows_well(&sphere, &vec![Vec3::ZERO; sphere.positions_m.len()]).stats;
+    assert!(stats.within > 0.95 && stats.patches < 60, "{stats:?}");
+
+    let parts: Vec<Mesh> = (0..500).map(|_| meshes::sphere(2, 0.1)).collect();
+    let mut all = Mesh::default();
+    for (i, part) in parts.iter().enumerate() {
+        let base = all.positions_m.len() as u32;
+        all.positions_m.extend(part.positions_m.iter().map(|&p| p + Vec3::new((i % 25) as f32, (i / 25) as f32, 0.0)));
+        all.triangles.extend(part.triangles.iter().map(|t| t.map(|v| v + base)));
+    }
+    let all = meshes::mesh(all.positions_m, all.triangles);
+    assert!(grows_well(&all, &meshes::tangent(&all, |_| Vec3::Z)).stats.patches >= 500);
+
+    // A fan of slivers, three triangles on one edge, and triangles without area.
+    let fan = (0..40).map(|i| Vec3::new(1.0, i as f32 * 1e-6, 0.0));
+    let slivers =
+        meshes::mesh(std::iter::once(Vec3::ZERO).chain(fan).collect(), (1..40).map(|i| [0, i, i + 1]).collect());
+    grows_well(&slivers, &vec![Vec3::X; slivers.positions_m.len()]);
+    let book = meshes::mesh(
+        vec![Vec3::ZERO, Vec3::Y, Vec3::X, Vec3::Z, Vec3::NEG_X],
+        vec![[0, 1, 2], [0, 1, 3], [0, 1, 4], [0, 0, 1], [0, 1, 0], [2, 2, 2]],
+    );
+    assert_eq!(grows_well(&book, &meshes::tangent(&book, |_| Vec3::Y)).triangles.len(), 6);
+    let nothing = meshes::mesh(vec![Vec3::ZERO], vec![]);
+    assert_eq!(grows_well(&nothing, &[Vec3::ZERO]).stats.patches, 0);
+}
+
+#[test]
+fn scale_rotation_and_place_change_nothing_that_counts() {
+    let mesh = meshes::torus(14, [1.0, 0.4]);
+    let comb = directions(&mesh, &[FieldSource::Tailward { sag: 0.3 }]).expect("a comb").direction;
+    let patches = parameterise(&mesh, &comb, 0.125, LAPPED).expect("patches");
+    for power in [-20, 7] {
+        let mut scaled = mesh.clone();
+        let scale = 2.0_f32.powi(power);
+        scaled.positions_m.iter_mut().for_each(|p| *p *= scale);
+        let again = parameterise(&scaled, &comb, 0.125 * scale, LAPPED).expect("patches");
+        assert_eq!((&again.uv, &again.patch), (&patches.uv, &patches.patch), "scaled by 2^{power}");
+    }
+    let turn = furrier::math::Quat::from_rotation_x(0.3) * furrier::math::Quat::from_rotation_y(1.1);
+    let mut moved = mesh.clone();
+    moved.positions_m.iter_mut().for_each(|p| *p = turn * *p + Vec3::new(3.0, -1.0, 2.0));
+    moved.normals.iter_mut().for_each(|n| *n = turn * *n);
+    let turned: Vec<Vec3> = comb.iter().map(|&d| turn * d).collect();
+    let again = parameterise(&moved, &turned, 0.125, LAPPED).expect("patches");
+    let measures = |p: &Patches| {
+        let s = &p.stats;
+        [s.singular_values.mean, s.singular_values.p5, s.singular_values.p95, s.within, s.seams_m, s.tiles_per_m.mean]
+    };
+    for (a, b) in measures(&patches).into_iter().zip(measures(&again)) {
+        assert!((a - b).abs() <= 0.01 * a.abs(), "{:?} {:?}", patches.stats, again.stats);
+    }
+    assert!((patches.stats.field_angle_rad - again.stats.field_angle_rad).abs() < 0.01 * patches.stats.field_angle_rad);
+}
+
+#[test]
+fn threads_do_not_matter() {
+    let mesh = meshes::sphere(20, 0.1);
+    let comb = meshes::tangent(&mesh, |_| Vec3::NEG_Y);
+    let patches = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| parameterise(&mesh, &comb, 0.01, LAPPED)).expect("patches")
+    };
+    assert_eq!(patches(1), patches(4));
+}
+
+/// A random tile of 128² texels, smoothed over a few: hair-like in that neighbours resemble each other.
+fn tile() -> impl Fn(Vec2) -> [f32; 3] {
+    use furrier::math::hash::{combine, unit_f32};
+    let size = 128_i64;
+    let raw = move |x: i64, y: i64, v: u64| {
+        unit_f32(combine(combine(v, x.rem_euclid(size) as u64), y.rem_euclid(size) as u64))
+    };
+    let texels: Vec<[f32; 3]> = (0..size * size)
+        .map(|i| {
+            let (x, y) = (i % size, i / size);
+            [0, 1, 2]
+                .map(|v| (-3..=3).flat_map(|dx| (-1..=1).map(move |dy| raw(x + dx, y + dy, v))).sum::<f32>() / 21.0)
+        })
+        .collect();
+    move |uv: Vec2| {
+        let at = (uv * size as f32).floor();
+        texels[(at.y as i64).rem_euclid(size) as usize * size as usize + (at.x as i64).rem_euclid(size) as usize]
+    }
+}
+
+#[test]
+fn seams_show_no_more_than_chance_and_planted_ones_are_seen() {
+    let mesh = meshes::sphere(24, 0.1);
+    let comb = meshes::tangent(&mesh, |_| Vec3::NEG_Y);
+    let patches = parameterise(&mesh, &comb, 0.02, LAPPED).expect("patches");
+    let tile = tile();
+    let plain = measure_seams(&mesh, &patches, 0.02, 128, |_, uv| tile(uv));
+    assert!(plain.seams > 50 && plain.difference < 1.1 && plain.variance > 0.9, "{plain:?}");
+
+    let topology = furrier::data::topology::Topology::new(&mesh.triangles, |v| mesh.position_class[v as usize]);
+    let at_seam = |t: u32| {
+        (0..3).any(|k| {
+            let across = topology.across[3 * t as usize + k] as usize;
+            let uv = |e: usize| patches.uv[patches.triangles[e / 3][e % 3] as usize];
+            uv(3 * t as usize + k) != uv(across - across % 3 + (across + 1) % 3)
+        })
+    };
+    // Triangles along seams differ in brightness: the seams show.
+    let bright = |t: u32, uv: Vec2| tile(uv).map(|x| if at_seam(t) { x + 0.05 * (t % 5) as f32 } else { x });
+    let seen = measure_seams(&mesh, &patches, 0.02, 128, bright);
+    assert!(seen.difference > 1.5, "{seen:?}");
+    // Blurred along seams: no difference, but no hair either.
+    let blurred = measure_seams(&mesh, &patches, 0.02, 128, |t, uv| if at_seam(t) { [0.5; 3] } else { tile(uv) });
+    assert!(blurred.difference < 1.1 && blurred.variance < 0.9, "{blurred:?}");
+}
+
+#[test]
+fn planted_faults_in_patches_are_found() {
+    let mesh = meshes::sphere(6, 0.1);
+    let comb = meshes::tangent(&mesh, |_| Vec3::NEG_Y);
+    let sound = parameterise(&mesh, &comb, 0.02, LAPPED).expect("patches");
+    covers(&mesh, &sound).expect("sound");
+    let faults: [fn(&mut Patches); 5] = [
+        |p| p.triangles.swap(0, 9),
+        |p| p.triangles.truncate(8),
+        |p| p.uv[3].x = f32::NAN,
+        |p| p.patch[p.triangles[4][0] as usize] += 1,
+        |p| p.triangles[7].rotate_left(1),
+    ];
+    for (i, fault) in faults.iter().enumerate() {
+        let mut broken = sound.clone();
+        fault(&mut broken);
+        assert!(covers(&mesh, &broken).is_err(), "fault {i} went unseen");
+    }
+}
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig::with_cases(64))]
+
+    /// Soups of triangles over few points: non-manifold, degenerate, one-sided, flipped.
+    #[test]
+    fn random_meshes_are_covered(
+        points in proptest::collection::vec((-1.0_f32..1.0, -1.0_f32..1.0, -1.0_f32..1.0), 3..30),
+        corners in proptest::collection::vec((0_usize..1000, 0_usize..1000, 0_usize..1000), 1..80),
+        combs in proptest::collection::vec((-1.0_f32..1.0, -1.0_f32..1.0, -1.0_f32..1.0), 30),
+    ) {
+        let n = points.len();
+        let triangles = corners.iter().map(|&(a, b, c)| [a, b, c].map(|v| (v % n) as u32)).collect();
+        let mesh = meshes::mesh(points.into_iter().map(Vec3::from).collect(), triangles);
+        let combs: Vec<Vec3> = combs.into_iter().map(|c| Vec3::from(c).normalize_or_zero()).collect();
+        for method in [LAPPED, ATLAS] {
+            let patches = parameterise(&mesh, &combs[..n], 0.1, method).expect("patches");
+            proptest::prop_assert_eq!(covers(&mesh, &patches), Ok(()));
+        }
+        let field = directions(&mesh, &[FieldSource::Gravity]).expect("a comb");
+        for &v in mesh.triangles.iter().flatten() {
+            proptest::prop_assert!((field.direction[v as usize].length() - 1.0).abs() < 1e-3);
         }
     }
 }

@@ -10,6 +10,7 @@ use super::pack::pack;
 use super::xatlas::{Options, charts};
 use crate::data::mesh::Mesh;
 use crate::data::patches::Patches;
+use crate::data::topology::Topology;
 use crate::error::{Error, Result};
 use crate::math::{DVec2, Vec2, Vec3};
 use std::collections::BTreeMap;
@@ -34,7 +35,8 @@ pub(super) fn parameterise(
     undo_stretch(&faces, &patch_of, &patches.triangles, &mut patches.uv);
     align(mesh, &faces, direction, f64::from(tile_edge_m), &patches.triangles, &patch_of, &mut patches.uv);
     place(&mut patches, texels_per_tile as f32, padding_texels);
-    patches.stats = measure(mesh, &faces, direction, f64::from(tile_edge_m), &patches);
+    let topology = Topology::new(&mesh.triangles, |v| mesh.position_class[v as usize]);
+    patches.stats = measure(mesh, &topology, &faces, direction, f64::from(tile_edge_m), &patches);
     Ok(patches)
 }
 

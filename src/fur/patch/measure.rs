@@ -10,7 +10,14 @@ use crate::math::{DVec2, Vec3};
 pub(super) const WITHIN: [f64; 2] = [0.7, 1.4];
 
 /// Measures `patches` of `mesh` against the comb `direction`, for tiles of `tile_edge_m`.
-pub(super) fn measure(mesh: &Mesh, faces: &[Face], direction: &[Vec3], tile_edge_m: f64, patches: &Patches) -> Stats {
+pub(super) fn measure(
+    mesh: &Mesh,
+    topology: &Topology,
+    faces: &[Face],
+    direction: &[Vec3],
+    tile_edge_m: f64,
+    patches: &Patches,
+) -> Stats {
     let mut stats = Stats {
         patches: patches.patch.iter().max().map_or(0, |&p| p as usize + 1),
         faces: patches.triangles.len(),
@@ -38,7 +45,12 @@ pub(super) fn measure(mesh: &Mesh, faces: &[Face], direction: &[Vec3], tile_edge
             combed += face.area_m2;
         }
     }
-    stats.seams_m = seams(mesh, patches).map(|[a, b]| f64::from(a.distance(b))).sum();
+    stats.seams_m = seams(topology, patches)
+        .map(|seam| {
+            let [a, b] = seam.ends[0].map(|v| mesh.positions_m[patches.base_vertex[v] as usize]);
+            f64::from(a.distance(b))
+        })
+        .fold(0.0, |sum, length| sum + length);
     stats.within /= stats.area_m2.max(f64::MIN_POSITIVE);
     stats.field_angle_rad = angle / f64::max(combed, f64::MIN_POSITIVE);
     stats.singular_values = spread(values);
@@ -46,21 +58,33 @@ pub(super) fn measure(mesh: &Mesh, faces: &[Face], direction: &[Vec3], tile_edge
     stats
 }
 
-/// Ends of the edges between two triangles that differ in texture coordinates there.
-fn seams<'a>(mesh: &'a Mesh, patches: &'a Patches) -> impl Iterator<Item = [Vec3; 2]> + 'a {
-    let topology = Topology::new(&mesh.triangles, |v| mesh.position_class[v as usize]);
-    (0..3 * mesh.triangles.len()).filter_map(move |e| {
+/// An edge between two triangles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    /// The edge as `3 t + k` of its two triangles.
+    pub edges: [usize; 2],
+    /// Coat vertices of its ends on both sides, in the same order.
+    pub ends: [[usize; 2]; 2],
+}
+
+/// All edges that have one clear neighbour, each once.
+pub(super) fn edges<'a>(topology: &'a Topology, patches: &'a Patches) -> impl Iterator<Item = Edge> + 'a {
+    let vertex = |e: usize| patches.triangles[e / 3][e % 3] as usize;
+    let next = |e: usize| e - e % 3 + (e + 1) % 3;
+    (0..topology.across.len()).filter_map(move |e| {
         let across = topology.across[e];
+        let other = across as usize;
         // Each edge once, from its lower side.
-        if across == NO_NEIGHBOUR || (across as usize) < e {
-            return None;
-        }
-        let uv = |e: usize| patches.uv[patches.triangles[e / 3][e % 3] as usize];
-        let next = |e: usize| e - e % 3 + (e + 1) % 3;
-        let continued = uv(e) == uv(next(across as usize)) && uv(next(e)) == uv(across as usize);
-        let [a, b] = [e % 3, (e + 1) % 3].map(|k| mesh.positions_m[mesh.triangles[e / 3][k] as usize]);
-        (!continued).then_some([a, b])
+        (across != NO_NEIGHBOUR && e < other).then(|| Edge {
+            edges: [e, other],
+            ends: [[vertex(e), vertex(next(e))], [vertex(next(other)), vertex(other)]],
+        })
     })
+}
+
+/// The edges across which the texture does not go on.
+pub(super) fn seams<'a>(topology: &'a Topology, patches: &'a Patches) -> impl Iterator<Item = Edge> + 'a {
+    edges(topology, patches).filter(|edge| (0..2).any(|k| patches.uv[edge.ends[0][k]] != patches.uv[edge.ends[1][k]]))
 }
 
 /// Mean and percentiles of (value, weight) pairs; zeros for none.

@@ -9,6 +9,7 @@ mod face;
 mod lapped;
 mod measure;
 mod pack;
+mod seams;
 mod uv;
 mod xatlas;
 
@@ -17,6 +18,7 @@ use crate::data::patches::Patches;
 use crate::error::{Error, Result};
 use crate::math::Vec3;
 
+pub use seams::{SeamStats, measure_seams};
 pub use uv::usable as uv_usable;
 
 /// Where the texture coordinates come from.

@@ -60,13 +60,14 @@ pub(super) fn parameterise(mesh: &Mesh, direction: &[Vec3], tile_edge_m: f32, se
     }
 
     let finite = |uv: Vec2| if uv.is_finite() { uv } else { Vec2::ZERO };
-    let patch_of = islands(mesh, own);
+    let topology = Topology::new(&mesh.triangles, |v| mesh.position_class[v as usize]);
+    let patch_of = islands(mesh, &topology, own);
     let (mut patches, original) = split(mesh, &patch_of, |v| finite(own[v as usize]));
     align(mesh, &faces, direction, f64::from(tile_edge_m), &patches.triangles, &patch_of, &mut patches.uv);
 
     let mirrored_m2 = mirrored_area(&faces, &patches.triangles, &original);
     let overlapped_m2 = overlapped_area(&faces, &patches.triangles, &original);
-    let mut stats = measure(mesh, &faces, direction, f64::from(tile_edge_m), &patches);
+    let mut stats = measure(mesh, &topology, &faces, direction, f64::from(tile_edge_m), &patches);
     stats.mirrored_m2 = mirrored_m2;
     stats.overlapped_m2 = overlapped_m2;
     warn(&mut stats, set, own.iter().filter(|uv| !uv.is_finite()).count());
@@ -76,8 +77,7 @@ pub(super) fn parameterise(mesh: &Mesh, direction: &[Vec3], tile_edge_m: f32, se
 
 /// The island of each triangle: triangles belong together across edges where both corners agree in place and
 /// coordinate. Numbered in order of their first triangle.
-fn islands(mesh: &Mesh, uv: &[Vec2]) -> Vec<u32> {
-    let topology = Topology::new(&mesh.triangles, |v| mesh.position_class[v as usize]);
+fn islands(mesh: &Mesh, topology: &Topology, uv: &[Vec2]) -> Vec<u32> {
     let joined = |t: usize, k: usize, other: usize| {
         let point = |v: u32| (mesh.position_class[v as usize], uv[v as usize].to_array().map(f32::to_bits));
         let ends = [mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]].map(point);

@@ -7,6 +7,7 @@
 mod absorb;
 mod flatten;
 mod grow;
+mod offset;
 mod patch;
 mod seed;
 
@@ -15,7 +16,6 @@ use super::measure::measure;
 use crate::data::mesh::Mesh;
 use crate::data::patches::Patches;
 use crate::data::topology::Topology;
-use crate::math::hash::{combine, unit_f64};
 use crate::math::{DVec2, Vec3};
 use patch::Patch;
 use std::collections::HashMap;
@@ -57,14 +57,14 @@ pub(super) fn parameterise(mesh: &Mesh, direction: &[Vec3], tile_edge_m: f32, se
         patches.push(patch);
     }
     absorb::absorb(&surface, &mut patches, &mut owner);
-    let mut result = assemble(mesh, &patches, &owner, f64::from(tile_edge_m), seed);
-    result.stats = measure(mesh, &faces, direction, f64::from(tile_edge_m), &result);
+    let mut result = assemble(mesh, &patches, &owner, f64::from(tile_edge_m));
+    offset::settle(mesh, &surface.topology, seed, &mut result);
+    result.stats = measure(mesh, &surface.topology, &faces, direction, f64::from(tile_edge_m), &result);
     result
 }
 
-/// Coat vertices: one per flat vertex of a patch and mesh vertex there, so that the mesh's own seams stay. Each patch
-/// is moved by a random part of the tile.
-fn assemble(mesh: &Mesh, patches: &[Patch], owner: &[u32], tile_edge_m: f64, seed: u64) -> Patches {
+/// Coat vertices: one per flat vertex of a patch and mesh vertex there, so that the mesh's own seams stay.
+fn assemble(mesh: &Mesh, patches: &[Patch], owner: &[u32], tile_edge_m: f64) -> Patches {
     let mut number = vec![u32::MAX; patches.len()];
     let mut used = 0;
     let mut slots = vec![0_u32; mesh.triangles.len()];
@@ -83,13 +83,11 @@ fn assemble(mesh: &Mesh, patches: &[Patch], owner: &[u32], tile_edge_m: f64, see
             number[home as usize] = used;
             used += 1;
         }
-        let key = combine(combine(seed, 0x6f66_6673), u64::from(patch.faces[0]));
-        let offset = DVec2::new(unit_f64(combine(key, 0)), unit_f64(combine(key, 1)));
         result.triangles.push(std::array::from_fn(|k| {
             *made.entry((home, corners[k], triangle[k])).or_insert_with(|| {
                 result.base_vertex.push(triangle[k]);
                 result.patch.push(number[home as usize]);
-                result.uv.push((patch.uv[corners[k] as usize] / tile_edge_m + offset).as_vec2());
+                result.uv.push((patch.uv[corners[k] as usize] / tile_edge_m).as_vec2());
                 result.base_vertex.len() as u32 - 1
             })
         }));
