@@ -25,6 +25,7 @@ mod presets;
 mod ribbons;
 mod runtime;
 mod silhouette;
+mod summary;
 mod twins;
 mod undercoat;
 mod viewer;

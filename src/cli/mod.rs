@@ -3,6 +3,7 @@
 mod completions;
 mod console;
 mod devices;
+mod inspect;
 mod presets;
 
 use crate::error::{Kind, Result};
@@ -30,6 +31,7 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Inspect(inspect::Inspect),
     Presets(presets::Presets),
     Devices(devices::Devices),
     Completions(completions::Completions),
@@ -76,6 +78,7 @@ pub fn definition() -> clap::Command {
 impl Command {
     fn run(self, console: &Console) -> Result<()> {
         match self {
+            Self::Inspect(command) => command.run(console),
             Self::Presets(command) => command.run(console),
             Self::Devices(command) => command.run(console),
             Self::Completions(command) => command.run(console),
