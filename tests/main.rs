@@ -8,6 +8,7 @@
 
 mod accuracy;
 mod architecture;
+mod bake;
 mod cli;
 mod coat_file;
 mod coats;

@@ -32,7 +32,7 @@ fn coat() -> Coat {
         ..CoatPrimitive::default()
     };
     let tile = Tile { preset: "made".into(), edge_m: 0.01, height_m: 0.02, shells, fin };
-    Coat { tiles: vec![tile], primitives: vec![worn] }
+    Coat { metres_per_unit: 1.0, tiles: vec![tile], primitives: vec![worn] }
 }
 
 #[test]

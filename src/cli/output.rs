@@ -13,7 +13,9 @@ use std::path::{Path, PathBuf};
 /// Names the path and what is wrong with it.
 pub fn check(path: &Path, others: &[&Path]) -> Result<()> {
     if others.contains(&path) {
-        return Err(Error::usage("two files of this command are the same").with_file(path));
+        return Err(Error::usage("two files of this command are the same")
+            .with_file(path)
+            .with_hint("write to another file; inputs are never overwritten"));
     }
     let others: Vec<PathBuf> = others.iter().map(|other| other.to_path_buf()).collect();
     write::check_target(path, &others)

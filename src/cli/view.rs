@@ -79,8 +79,8 @@ impl View {
         }
         let (asset, coat) = asset::coat::read_coat(&self.file)?;
         let shot = match self.turntable {
-            Some(views) => viewer::turntable(&asset, &coat, coat.metres_per_unit, &options, views)?,
-            None => viewer::screenshot(&asset, &coat, coat.metres_per_unit, &options)?,
+            Some(views) => viewer::turntable(&asset, &coat, &options, views)?,
+            None => viewer::screenshot(&asset, &coat, &options)?,
         };
         output::png(&self.screenshot, &shot.image)?;
         if let Some(report) = &self.report {
