@@ -1,11 +1,12 @@
 //! The real binary: help, exit codes, what goes to which stream.
 
+use crate::common::furrier_path;
 use assert_cmd::Command;
 use predicates::prelude::*;
 
 /// The binary under test.
 fn furrier() -> Command {
-    Command::new(assert_cmd::cargo::cargo_bin!("furrier"))
+    Command::new(furrier_path())
 }
 
 #[test]
@@ -71,7 +72,7 @@ fn a_shown_preset_can_be_read_back() {
 
 #[test]
 fn a_reader_that_goes_away_is_no_failure() {
-    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin!("furrier"))
+    let mut child = std::process::Command::new(furrier_path())
         .args(["completions", "zsh"])
         .stdout(std::process::Stdio::piped())
         .spawn()
@@ -84,7 +85,7 @@ fn a_reader_that_goes_away_is_no_failure() {
 #[test]
 fn a_full_stdout_is_a_failure() {
     let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
-    let status = std::process::Command::new(assert_cmd::cargo::cargo_bin!("furrier"))
+    let status = std::process::Command::new(furrier_path())
         .args(["presets", "list"])
         .stdout(full)
         .stderr(std::process::Stdio::null())

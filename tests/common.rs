@@ -13,3 +13,8 @@ pub fn shared() -> Option<PathBuf> {
     eprintln!("left out: {} is missing", folder.display());
     None
 }
+
+/// The binary under test.
+pub fn furrier_path() -> &'static Path {
+    assert_cmd::cargo::cargo_bin!("furrier")
+}

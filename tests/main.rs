@@ -8,6 +8,7 @@
 
 mod accuracy;
 mod architecture;
+mod bake;
 mod cli;
 mod coat_file;
 mod coats;
@@ -27,6 +28,7 @@ mod ribbons;
 mod runtime;
 mod shaders;
 mod silhouette;
+mod summary;
 mod twins;
 mod validator;
 mod undercoat;

@@ -70,8 +70,10 @@ pub struct Timing {
 pub struct Baked {
     /// The coat.
     pub coat: Coat,
-    /// What a person should know, one sentence each.
+    /// What was decided for the user, one sentence each.
     pub notes: Vec<String>,
+    /// What may not be as the user expects, one sentence each.
+    pub warnings: Vec<String>,
     /// Materials that got fur.
     pub materials: Vec<String>,
     /// Bounding diagonal that lengths refer to, m.
@@ -122,12 +124,13 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
         }
     }
     let scale = units::scale(request.units, &request.preset, &asset, request.input.starts_with("sample:"))?;
-    let mut notes = asset.warnings.clone();
-    notes.extend(scale.note.clone());
+    let mut notes: Vec<String> = scale.note.iter().cloned().collect();
+    let mut warnings = asset.warnings.clone();
     let mut coat = Coat { metres_per_unit: scale.metres_per_unit, ..Coat::default() };
     let mut baked = Baked {
         coat: Coat::default(),
         notes: Vec::new(),
+        warnings: Vec::new(),
         materials: names(chosen.iter().map(|&i| &asset.parts[i])),
         diagonal_m: scale.diagonal_m,
         patches: Vec::new(),
@@ -144,7 +147,7 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
             Some(tile) => tile,
             None => {
                 let (tile, rows) = tile_of(preset, scale.diagonal_m as f32, request, &mut steps);
-                notes.extend(units::length_warning(tile.height_m, scale.diagonal_m));
+                warnings.extend(units::length_warning(tile.height_m, scale.diagonal_m));
                 coat.tiles.push(tile);
                 baked.accuracy.extend(rows);
                 tiles.push(preset);
@@ -152,13 +155,13 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
             }
         };
         let groomed = steps.run("groom", || skin::groom(&asset, part, preset, scale.metres_per_unit))?;
-        notes.extend(groomed.notes);
+        warnings.extend(groomed.notes);
         let textures = &coat.tiles[tile];
         let seed = combine(request.seed, index as u64);
         let method = method_of(request.method, preset, seed);
         let patches =
             steps.run("patches", || parameterise(&groomed.mesh, &groomed.fields.direction, textures.edge_m, method))?;
-        notes.extend(patches.stats.warnings.iter().cloned());
+        warnings.extend(patches.stats.warnings.iter().cloned());
         let mut worn = steps.run("wear", || {
             wear(&groomed.mesh, &groomed.fields, &patches, textures, seed, |v, offset_m| {
                 part.local_offset(v, offset_m, scale.metres_per_unit)
@@ -170,7 +173,7 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
     }
     notes.extend(steps.run("write", || write_coat(&asset, &coat, request.fallback, &request.out))?);
     baked.coat = coat;
-    baked.notes = notes;
+    (baked.notes, baked.warnings) = (notes, warnings);
     baked.timings = steps.timings;
     Ok(baked)
 }

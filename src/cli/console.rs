@@ -1,5 +1,6 @@
 //! What the command line prints and where: results on stdout, everything else on stderr.
 
+use super::progress::Progress;
 use crate::error::{Error, Kind, Result};
 use serde::Serialize;
 use std::io::{self, IsTerminal, Write};
@@ -47,6 +48,11 @@ impl Console {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Progress of a command that takes time.
+    pub fn progress(&self) -> Progress {
+        Progress::new(self.quiet)
     }
 
     /// Prints what the user should know but need not act on.

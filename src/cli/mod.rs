@@ -1,9 +1,15 @@
 //! Floor 9: the command line. One file per subcommand: parse, call the library, print.
 
+mod bake;
+mod compare;
 mod completions;
 mod console;
 mod devices;
+mod inspect;
+mod output;
 mod presets;
+mod progress;
+mod view;
 
 use crate::error::{Kind, Result};
 use clap::{CommandFactory, Parser, Subcommand};
@@ -30,6 +36,10 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Bake(bake::Bake),
+    View(view::View),
+    Inspect(inspect::Inspect),
+    Compare(compare::Compare),
     Presets(presets::Presets),
     Devices(devices::Devices),
     Completions(completions::Completions),
@@ -76,6 +86,10 @@ pub fn definition() -> clap::Command {
 impl Command {
     fn run(self, console: &Console) -> Result<()> {
         match self {
+            Self::Bake(command) => command.run(console),
+            Self::View(command) => command.run(console),
+            Self::Compare(command) => command.run(console),
+            Self::Inspect(command) => command.run(console),
             Self::Presets(command) => command.run(console),
             Self::Devices(command) => command.run(console),
             Self::Completions(command) => command.run(console),

@@ -3,5 +3,6 @@
 pub mod fins;
 pub mod judge;
 pub mod shells;
+pub mod summary;
 pub mod tile;
 pub mod wear;

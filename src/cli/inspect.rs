@@ -1,0 +1,90 @@
+//! `furrier inspect`.
+
+use super::console::Console;
+use crate::asset;
+use crate::coat::summary::{SCREEN, Summary, summarise};
+use crate::error::Result;
+use clap::Args;
+use serde::Serialize;
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+/// Say what the coat of a file holds and costs
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  furrier inspect furry.glb
+  furrier inspect furry.glb --json | jq .coat.vram_bytes")]
+pub struct Inspect {
+    /// A file that furrier baked
+    file: PathBuf,
+}
+
+/// What is printed as JSON.
+#[derive(Serialize)]
+struct Inspection {
+    file: PathBuf,
+    /// Material of each coat primitive, in their order.
+    materials: Vec<String>,
+    coat: Summary,
+}
+
+impl Inspect {
+    /// Prints what the coat holds.
+    ///
+    /// # Errors
+    /// Where the file cannot be read or wears no coat.
+    pub fn run(self, console: &Console) -> Result<()> {
+        let (asset, coat) = asset::coat::read_coat(&self.file)?;
+        let material = |mesh, primitive| {
+            let part = asset.parts.iter().find(|part| (part.mesh, part.primitive) == (mesh, primitive));
+            part.map_or_else(String::new, |part| part.material_name.clone())
+        };
+        let materials = coat.primitives.iter().map(|worn| material(worn.mesh, worn.primitive)).collect();
+        let inspection = Inspection { file: self.file, materials, coat: summarise(&coat) };
+        console.result(&inspection, |out| print(&inspection, out))
+    }
+}
+
+fn print(inspection: &Inspection, out: &mut dyn Write) -> io::Result<()> {
+    let coat = &inspection.coat;
+    writeln!(out, "{}", inspection.file.display())?;
+    for (worn, material) in coat.primitives.iter().zip(&inspection.materials) {
+        writeln!(
+            out,
+            "  {material}: {} triangles, {} coat vertices, {} patches, {} fins, tile {}",
+            worn.triangles, worn.vertices, worn.patches, worn.fins, worn.tile
+        )?;
+    }
+    for (i, tile) in coat.tiles.iter().enumerate() {
+        writeln!(
+            out,
+            "  tile {i} ({}): {:.1} mm wide, {:.1} mm high, {} layers of {}², {} mips, fins {}×{}, {}",
+            tile.preset,
+            tile.edge_mm,
+            tile.height_mm,
+            tile.layers,
+            tile.texture_size,
+            tile.mips,
+            tile.fin_size[0],
+            tile.fin_size[1],
+            megabytes(tile.vram_bytes)
+        )?;
+        writeln!(
+            out,
+            "    layers are 2 pixels apart at {:.2} m ({} pixels high, {}° of view); step back further",
+            tile.gap_distance_m, SCREEN.0, SCREEN.1
+        )?;
+    }
+    writeln!(
+        out,
+        "  all: {} triangles in {} draw calls, {}",
+        coat.drawn_triangles,
+        coat.draw_calls,
+        megabytes(coat.vram_bytes)
+    )
+}
+
+fn megabytes(bytes: usize) -> String {
+    format!("{:.2} MB", bytes as f64 / 1e6)
+}

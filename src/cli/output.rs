@@ -1,0 +1,48 @@
+//! Files that the command line writes beside furry assets: pictures and reports, whole or not at all.
+
+use crate::asset::write;
+use crate::data::image::Image8;
+use crate::error::{Error, Kind, Result};
+use image::ImageEncoder;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Fails, before any work is done, where `path` cannot be written or is one of `others`.
+///
+/// # Errors
+/// Names the path and what is wrong with it.
+pub fn check(path: &Path, others: &[&Path]) -> Result<()> {
+    if others.contains(&path) {
+        return Err(Error::usage("two files of this command are the same")
+            .with_file(path)
+            .with_hint("write to another file; inputs are never overwritten"));
+    }
+    let others: Vec<PathBuf> = others.iter().map(|other| other.to_path_buf()).collect();
+    write::check_target(path, &others)
+}
+
+/// Writes `value` as JSON.
+///
+/// # Errors
+/// Where the file cannot be written.
+pub fn json<T: Serialize>(path: &Path, value: &T) -> Result<()> {
+    let mut text = serde_json::to_vec_pretty(value).map_err(|e| unwritable(path, &e))?;
+    text.push(b'\n');
+    write::whole(path, &text, &[])
+}
+
+/// Writes an RGBA8 image as PNG.
+///
+/// # Errors
+/// Where the file cannot be written.
+pub fn png(path: &Path, image: &Image8) -> Result<()> {
+    let mut bytes = Vec::new();
+    image::codecs::png::PngEncoder::new(&mut bytes)
+        .write_image(&image.pixels, image.width, image.height, image::ExtendedColorType::Rgba8)
+        .map_err(|e| unwritable(path, &e))?;
+    write::whole(path, &bytes, &[])
+}
+
+fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> Error {
+    Error::new(Kind::Output, "the output cannot be encoded").with_file(path).with_found(error)
+}

@@ -1,0 +1,121 @@
+//! What a coat holds and costs, in numbers.
+
+use crate::data::coat::{Coat, CoatPrimitive, Tile};
+use crate::data::image::Image8;
+use serde::Serialize;
+
+/// The screen that [`TileSummary::gap_distance_m`] is given for: pixels up, and vertical field of view in degrees.
+pub const SCREEN: (f64, f64) = (1080.0, 40.0);
+/// From this many pixels between neighbouring shells on, they are seen as layers.
+const GAP_PIXELS: f64 = 2.0;
+/// Graphics memory of a coat vertex: base vertex, patch, UV, offset and tint.
+const VERTEX_BYTES: usize = 4 + 4 + 8 + 12 + 16;
+/// Graphics memory of a fin: four vertex indices, an interval and a thickness.
+const FIN_BYTES: usize = 16 + 8 + 4;
+
+/// A coat in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// One per tile.
+    pub tiles: Vec<TileSummary>,
+    /// One per coat primitive.
+    pub primitives: Vec<PrimitiveSummary>,
+    /// Triangles drawn when all shells and all fins are: those of the skin once per shell, two per fin.
+    pub drawn_triangles: usize,
+    /// Draw calls: one per shell, and one for the fins, of every primitive; the skin is not counted.
+    pub draw_calls: usize,
+    /// Graphics memory: textures uncompressed with their mips, and geometry.
+    pub vram_bytes: usize,
+}
+
+/// A tile in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TileSummary {
+    /// Preset it was grown from.
+    pub preset: String,
+    /// Edge, mm.
+    pub edge_mm: f32,
+    /// Height of the stack, mm.
+    pub height_mm: f32,
+    /// Layers, the opaque skin included.
+    pub layers: u32,
+    /// Texels along an edge.
+    pub texture_size: u32,
+    /// Mip levels.
+    pub mips: usize,
+    /// Texels of the fin texture, along the edge and along the hair.
+    pub fin_size: [u32; 2],
+    /// Distance, m, at which neighbouring shells seen from the side are 2 pixels apart on a screen 1080 pixels high with
+    /// a vertical field of view of 40°; nearer than that, layers can be told apart.
+    pub gap_distance_m: f64,
+    /// Graphics memory of its textures, uncompressed.
+    pub vram_bytes: usize,
+}
+
+/// A coat primitive in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PrimitiveSummary {
+    /// glTF mesh.
+    pub mesh: usize,
+    /// Primitive of that mesh.
+    pub primitive: usize,
+    /// Tile it wears.
+    pub tile: usize,
+    /// Coat vertices.
+    pub vertices: usize,
+    /// Triangles of one shell.
+    pub triangles: usize,
+    /// Patches, charts or islands.
+    pub patches: usize,
+    /// Edges that may carry a fin.
+    pub fins: usize,
+}
+
+/// Counts what `coat` holds.
+pub fn summarise(coat: &Coat) -> Summary {
+    let tiles: Vec<_> = coat.tiles.iter().map(tile).collect();
+    let primitives: Vec<_> = coat.primitives.iter().map(primitive).collect();
+    let shells = |p: &PrimitiveSummary| tiles.get(p.tile).map_or(0, |tile| tile.layers.saturating_sub(1) as usize);
+    let geometry: usize =
+        primitives.iter().map(|p| p.vertices * VERTEX_BYTES + p.triangles * 12 + p.fins * FIN_BYTES).sum();
+    Summary {
+        drawn_triangles: primitives.iter().map(|p| p.triangles * shells(p) + 2 * p.fins).sum(),
+        draw_calls: primitives.iter().map(|p| shells(p) + usize::from(p.fins > 0)).sum(),
+        vram_bytes: geometry + tiles.iter().map(|tile| tile.vram_bytes).sum::<usize>(),
+        tiles,
+        primitives,
+    }
+}
+
+fn tile(tile: &Tile) -> TileSummary {
+    let shells = &tile.shells;
+    let bytes = |images: &mut dyn Iterator<Item = &Image8>| images.map(|image| image.pixels.len()).sum::<usize>();
+    let mut stacks = shells.albedo.iter().chain(&shells.medium).chain(&shells.ends).flatten();
+    let gap_m = f64::from(tile.height_m) / f64::from(shells.layers.max(2) - 1);
+    TileSummary {
+        preset: tile.preset.clone(),
+        edge_mm: tile.edge_m * 1e3,
+        height_mm: tile.height_m * 1e3,
+        layers: shells.layers,
+        texture_size: shells.size,
+        mips: shells.albedo.len(),
+        fin_size: tile.fin.size,
+        gap_distance_m: gap_m * SCREEN.0 / (GAP_PIXELS * 2.0 * (0.5 * SCREEN.1.to_radians()).tan()),
+        vram_bytes: bytes(&mut stacks) + bytes(&mut tile.fin.albedo.iter().chain(&tile.fin.tangent)),
+    }
+}
+
+fn primitive(worn: &CoatPrimitive) -> PrimitiveSummary {
+    let mut patches = worn.patch.clone();
+    patches.sort_unstable();
+    patches.dedup();
+    PrimitiveSummary {
+        mesh: worn.mesh,
+        primitive: worn.primitive,
+        tile: worn.tile,
+        vertices: worn.base_vertex.len(),
+        triangles: worn.triangles.len(),
+        patches: patches.len(),
+        fins: worn.fins.len(),
+    }
+}
