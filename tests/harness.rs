@@ -80,6 +80,10 @@ fn one_percent_of_depth_tells_hair_a_fortieth_thicker() {
             crate::undercoat::depth_of_volume(&thicker, direction),
         );
         assert!((b - a).abs() > 0.01 * a, "{a} and {b} along {direction}");
+    }
+}
+
+#[test]
 fn every_measure_sees_its_fault() {
     let of = |other| compare(&picture(), &other).unwrap();
     let darker = of(changed(|c| c * 0.95));

@@ -30,6 +30,6 @@ mod shaders;
 mod silhouette;
 mod summary;
 mod twins;
-mod validator;
 mod undercoat;
+mod validator;
 mod viewer;

@@ -1,7 +1,7 @@
 //! Every shader parses and validates, and its structs lie in memory as Rust's do. Needs no adapter.
 
 use furrier::gpu::{Source, compose};
-use furrier::runtime::gpu::layout::{CoatVertex, FinInstance, LightUniform, SkinVertex, TileUniform, ViewUniform};
+use furrier::runtime::gpu::layout::{CoatVertex, FinInstance, LightUniform, Mip, SkinVertex, TileUniform, ViewUniform};
 use furrier::runtime::gpu::pipelines::{FIN, RESOLVE, SHARED, SHELL, SKIN};
 use naga::proc::Layouter;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -68,7 +68,8 @@ fn structs_lie_as_in_rust() {
     for (module, name, rust) in [
         (&shell, "Light", in_rust!(LightUniform { to_light, irradiance })),
         (&shell, "View", in_rust!(ViewUniform { clip_from_world, eye, ambient, light_count, lights })),
-        (&shell, "Tile", in_rust!(TileUniform { edge_m, height_m, extinction_scale_per_m, size, layers, mips })),
+        (&shell, "Tile", in_rust!(TileUniform { edge_m, height_m, size, layers, mips })),
+        (&shell, "Mip", in_rust!(Mip { gains, inverse_scale_m })),
         (&shell, "CoatVertex", in_rust!(CoatVertex { position_m, u, offset_m, v, normal, tint })),
         (&fin, "FinEdge", in_rust!(FinInstance { ends, u, thickness })),
     ] {

@@ -13,7 +13,7 @@ fn coat() -> Coat {
         size: 4,
         gains: vec![[1.0; 9]],
         slopes: vec![Vec2::ZERO; 5],
-        extinction_scale_per_m: 1.0,
+        extinction_scales_per_m: vec![1.0],
         albedo: image(4),
         medium: image(4),
         ends: image(1),

@@ -87,7 +87,11 @@ fn issues(files: &[PathBuf]) -> Option<Vec<BTreeMap<(u64, String), usize>>> {
 
 /// Kinds of errors and warnings that the output has and the input has not.
 fn new_issues(input: &BTreeMap<(u64, String), usize>, output: &BTreeMap<(u64, String), usize>) -> Vec<String> {
-    output.keys().filter(|kind| !input.contains_key(kind)).map(|(severity, code)| format!("{severity} {code}")).collect()
+    output
+        .keys()
+        .filter(|kind| !input.contains_key(kind))
+        .map(|(severity, code)| format!("{severity} {code}"))
+        .collect()
 }
 
 #[test]
@@ -117,7 +121,9 @@ fn the_khronos_validator_finds_nothing_new() {
     let n = inputs.len();
     let mut files = inputs;
     for (i, asset) in assets.iter().enumerate() {
-        for (fallback, extension) in [(Fallback::None, "glb"), (Fallback::Shells(3), "glb"), (Fallback::Shells(2), "gltf")] {
+        for (fallback, extension) in
+            [(Fallback::None, "glb"), (Fallback::Shells(3), "glb"), (Fallback::Shells(2), "gltf")]
+        {
             let name = format!("{i}-{}.{extension}", if fallback == Fallback::None { "none" } else { "shells" });
             write_coat(asset, &coat_for(asset), fallback, &folder.path().join(&name)).expect("written");
             files.push(folder.path().join(name));

@@ -16,7 +16,6 @@ struct Tile {
     // Layers, the skin counted.
     layers: u32,
     mips: u32,
-    _pad0: u32,
 }
 
 struct Mip {

@@ -239,8 +239,7 @@ fn in_pool<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Re
 
 /// What `--report` writes.
 fn report(baked: &Baked, total_ms: f64) -> Value {
-    let steps: Vec<_> =
-        baked.timings.iter().map(|t| Step { name: t.name.to_owned(), ms: t.ms, bytes: 0 }).collect();
+    let steps: Vec<_> = baked.timings.iter().map(|t| Step { name: t.name.to_owned(), ms: t.ms, bytes: 0 }).collect();
     let patches: Vec<_> = baked.patches.iter().map(patch_measures).collect();
     let summary = summarise(&baked.coat);
     json!({

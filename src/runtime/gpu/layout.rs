@@ -64,7 +64,6 @@ pub struct TileUniform {
     pub layers: u32,
     /// Mips.
     pub mips: u32,
-    pub(super) _pad0: u32,
 }
 
 /// `Mip` of `shared/coat.wgsl`.
@@ -94,7 +93,6 @@ impl TileUniform {
             size: tile.shells.size as f32,
             layers: tile.shells.layers,
             mips: tile.shells.albedo.len() as u32,
-            _pad0: 0,
         }
     }
 }
