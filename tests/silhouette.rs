@@ -90,7 +90,7 @@ fn measured(gpu: &Gpu, fibres: [&Fibre; 2], lean_rad: f32, shows: &[Show]) -> ([
         tint: vec![Vec3::ONE; count],
     };
     let [guard, undercoat] = [0, 1].map(|i| grow::skin::grow(fibres[i], &mesh, &fields, 3 + i as u64));
-    let scene = Scene { guard: Some(&guard), undercoat: Some(&undercoat), skin: Some(&mesh), torus_m: None };
+    let scene = Scene { guard: Some(&guard), undercoat: Some(&undercoat), skin: Some(&mesh), ..Default::default() };
     let rays = Rays::Perspective { camera: camera(), size: [PIXELS; 2], supersampling: 3 };
     let strands = rings(&Caster::new(scene).render(&rays, DepthRange::ALL).alpha, height_m);
     let renderer = Renderer::new(gpu, &tiles, 2).unwrap();

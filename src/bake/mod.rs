@@ -201,7 +201,7 @@ fn tile_of(preset: &Preset, diagonal_m: f32, request: &Request, steps: &mut Step
     let hair = steps.run("grow", || TileHair::grow(&guard, &undercoat, preset.shells.tile_mm * 1e-3, request.seed));
     let tile = steps.run("tile", || bake_tile(&hair, &recipe));
     let judge = || {
-        let effort = Effort { pixels: 64, supersampling: 3 };
+        let effort = Effort { pixels: 32, supersampling: 2 };
         coverage_table(&hair, &tile, leaning(recipe.lean_deg), effort)
     };
     let rows = request.judge.then(|| steps.run("judge", judge));

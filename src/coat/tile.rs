@@ -23,6 +23,8 @@ pub struct TileHair {
     pub edge_m: f32,
     /// Height that no hair exceeds, m.
     pub height_m: f32,
+    /// The map it is worn under; identity for the tile itself.
+    pub skin_from_tile: Mat3,
 }
 
 impl TileHair {
@@ -33,7 +35,7 @@ impl TileHair {
         let highest = |s: &Strands| s.points_m.iter().map(|p| p.z).fold(0.0, f32::max);
         // A little above the highest tip, so that no tip ends exactly on the top.
         let height_m = highest(&guard).max(highest(&undercoat)).max(1e-6) * 1.001;
-        Self { guard, undercoat, edge_m, height_m }
+        Self { guard, undercoat, edge_m, height_m, skin_from_tile: Mat3::IDENTITY }
     }
 
     /// The same hair as a skin wears it: every point mapped by `skin_from_tile`, which must keep x and y.
@@ -43,12 +45,19 @@ impl TileHair {
             *p = skin_from_tile * *p;
         }
         worn.height_m *= skin_from_tile.z_axis.z;
+        worn.skin_from_tile = skin_from_tile;
         worn
     }
 
     /// As a scene that repeats.
     pub fn scene(&self) -> Scene<'_> {
-        Scene { guard: Some(&self.guard), undercoat: Some(&self.undercoat), skin: None, torus_m: Some(self.edge_m) }
+        Scene {
+            guard: Some(&self.guard),
+            undercoat: Some(&self.undercoat),
+            skin: None,
+            torus_m: Some(self.edge_m),
+            upright_from_world: self.skin_from_tile.inverse(),
+        }
     }
 }
 

@@ -43,6 +43,12 @@ impl Bvh {
         self.nodes.first().map(|n| (n.low, n.high))
     }
 
+    /// The items in the order of the leaves; from now on items are referred to by their place in it.
+    pub fn take_order(&mut self) -> Vec<u32> {
+        let places = (0..self.items.len() as u32).collect();
+        std::mem::replace(&mut self.items, places)
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.nodes.len() * size_of::<Node>() + self.items.len() * 4

@@ -2,7 +2,7 @@
 //! id), composited front to back. Slow and plain, with no resolution of its own.
 
 use super::bvh::Bvh;
-use super::cone::Cone;
+use super::pieces::{self, Piece};
 use super::rays::{Ray, Rays};
 use super::{DepthRange, Scene};
 use crate::data::film::Film;
@@ -13,20 +13,15 @@ use rayon::prelude::*;
 /// Transmittance below which nothing behind can be seen.
 const OPAQUE: f32 = 1e-4;
 
-/// What a ray crosses.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Surface {
-    /// A hair of set 0 (guard) or 1 (undercoat), and where along it.
-    Hair { set: u8, strand: u32, segment: u32, s: f32 },
-    /// The skin.
-    Skin { triangle: u32 },
-}
-
+/// Where a ray meets a piece of the scene.
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
     depth_m: f32,
     alpha: f32,
-    surface: Surface,
+    /// Index of the piece.
+    piece: u32,
+    /// Where along the hair, in [0, 1].
+    s: f32,
 }
 
 /// Where a search for crossings may end.
@@ -36,18 +31,6 @@ enum Stop {
     NearestOpaque,
     /// Once anything is opaque, nothing else matters.
     AnyOpaque,
-}
-
-/// Whether this crossing is of the same hair as the one before: neighbouring pieces overlap at their joint, where the
-/// hair counts once.
-fn same_hair(last: &mut Option<(u8, u32)>, crossing: &Crossing) -> bool {
-    let hair = match crossing.surface {
-        Surface::Hair { set, strand, .. } => Some((set, strand)),
-        Surface::Skin { .. } => None,
-    };
-    let same = hair.is_some() && hair == *last;
-    *last = hair;
-    same
 }
 
 /// What one ray sees; colour-like values are premultiplied by alpha.
@@ -72,44 +55,15 @@ pub struct Seen {
 /// A scene made ready for rays.
 pub struct Caster<'a> {
     scene: Scene<'a>,
+    pieces: Vec<Piece>,
     bvh: Bvh,
-    /// Index of the first piece of undercoat, and of the first triangle.
-    starts: [usize; 2],
-}
-
-fn pieces(strands: Option<&Strands>) -> usize {
-    strands.map_or(0, |s| s.len() * (s.points_per_strand - 1))
-}
-
-fn cone(strands: &Strands, piece: usize) -> (usize, usize, Cone) {
-    let segments = strands.points_per_strand - 1;
-    let (strand, segment) = (piece / segments, piece % segments);
-    let points = strands.points_of_m(strand);
-    let radius_m = |i: usize| strands.root_radius_m[strand] * strands.profile.radius_factor(i as f32 / segments as f32);
-    let cone = Cone {
-        from_m: points[segment],
-        to_m: points[segment + 1],
-        from_radius_m: radius_m(segment),
-        to_radius_m: radius_m(segment + 1),
-    };
-    (strand, segment, cone)
 }
 
 impl<'a> Caster<'a> {
     /// Builds the hierarchy.
     pub fn new(scene: Scene<'a>) -> Self {
-        let starts = [pieces(scene.guard), pieces(scene.guard) + pieces(scene.undercoat)];
-        let mut bounds = Vec::with_capacity(starts[1]);
-        for strands in [scene.guard, scene.undercoat].into_iter().flatten() {
-            bounds.par_extend((0..pieces(Some(strands))).into_par_iter().map(|i| cone(strands, i).2.bounds_m()));
-        }
-        if let Some(skin) = scene.skin {
-            bounds.extend((0..skin.triangles.len()).map(|t| {
-                let [a, b, c] = skin.corners_m(t);
-                (a.min(b).min(c), a.max(b).max(c))
-            }));
-        }
-        Self { scene, bvh: Bvh::new(&bounds), starts }
+        let (pieces, bvh) = pieces::build(&scene);
+        Self { scene, pieces, bvh }
     }
 
     /// Fills a film.
@@ -162,7 +116,7 @@ impl<'a> Caster<'a> {
         self.sort(crossings);
         let mut through = 1.0;
         let mut last = None;
-        for crossing in crossings.iter().filter(|c| !same_hair(&mut last, c)) {
+        for crossing in crossings.iter().filter(|c| !self.same_hair(&mut last, c)) {
             through *= 1.0 - crossing.alpha;
         }
         through
@@ -176,7 +130,7 @@ impl<'a> Caster<'a> {
         let mut through = 1.0_f32;
         let mut last = None;
         for crossing in crossings.iter() {
-            if same_hair(&mut last, crossing) {
+            if self.same_hair(&mut last, crossing) {
                 continue;
             }
             let weight = through * crossing.alpha;
@@ -193,39 +147,42 @@ impl<'a> Caster<'a> {
 
     /// Depth first, then kind and source index: equal depths composite alike in any order of discovery.
     fn sort(&self, crossings: &mut [Crossing]) {
-        crossings.sort_unstable_by(|a, b| {
-            a.depth_m.total_cmp(&b.depth_m).then_with(|| self.key(&a.surface).cmp(&self.key(&b.surface)))
-        });
+        crossings.sort_unstable_by(|a, b| a.depth_m.total_cmp(&b.depth_m).then_with(|| self.key(a).cmp(&self.key(b))));
     }
 
-    fn key(&self, surface: &Surface) -> (u8, u32, u32) {
-        match *surface {
-            Surface::Hair { set, strand, segment, .. } => (set, self.strands(set).id[strand as usize], segment),
-            Surface::Skin { triangle } => (2, triangle, 0),
-        }
+    /// Kind, source index and place along the hair.
+    fn key(&self, crossing: &Crossing) -> (u8, u32, u32) {
+        let piece = &self.pieces[crossing.piece as usize];
+        let id = self.strands(piece).map_or(piece.index, |strands| strands.id[piece.index as usize]);
+        (piece.set, id, piece.span[0].to_bits())
     }
 
-    fn strands(&self, set: u8) -> &'a Strands {
-        let strands = if set == 0 { self.scene.guard } else { self.scene.undercoat };
-        strands.unwrap_or_else(|| unreachable!("a crossing names a set that is there"))
+    /// Whether this crossing is of the same hair as the one before: neighbouring pieces overlap at their joint, where
+    /// the hair counts once.
+    fn same_hair(&self, last: &mut Option<(u8, u32)>, crossing: &Crossing) -> bool {
+        let piece = &self.pieces[crossing.piece as usize];
+        let hair = Some((piece.set, piece.index));
+        let same = piece.set < 2 && hair == *last;
+        *last = hair;
+        same
+    }
+
+    /// The set of strands that a piece is from; none for the skin.
+    fn strands(&self, piece: &Piece) -> Option<&'a Strands> {
+        [self.scene.guard, self.scene.undercoat, None][usize::from(piece.set)]
     }
 
     fn shade(&self, crossing: &Crossing, weight: f32, seen: &mut Seen) {
         seen.depth_m += weight * crossing.depth_m;
-        match crossing.surface {
-            Surface::Hair { set, strand, segment, s } => {
-                let strands = self.strands(set);
-                let points = strands.points_of_m(strand as usize);
-                let along = (points[segment as usize + 1] - points[segment as usize]).normalize_or_zero();
-                let colour = strands.tint[strand as usize] * strands.profile.ramp_at(s);
-                seen.albedo += weight * colour;
-                seen.tangent += weight * along;
-                *(if set == 0 { &mut seen.guard } else { &mut seen.undercoat }) += weight;
-            }
-            Surface::Skin { triangle } => {
-                let normal = self.scene.skin.map_or(Vec3::Z, |m| m.area_vector_m2(triangle as usize));
-                seen.normal += weight * normal.normalize_or_zero();
-            }
+        let piece = &self.pieces[crossing.piece as usize];
+        if let Some(strands) = self.strands(piece) {
+            let colour = strands.tint[piece.index as usize] * strands.profile.ramp_at(crossing.s);
+            seen.albedo += weight * colour;
+            seen.tangent += weight * (piece.cone.to_m - piece.cone.from_m).normalize_or_zero();
+            *(if piece.set == 0 { &mut seen.guard } else { &mut seen.undercoat }) += weight;
+        } else {
+            let normal = self.scene.skin.map_or(Vec3::Z, |m| m.area_vector_m2(piece.index as usize));
+            seen.normal += weight * normal.normalize_or_zero();
         }
     }
 
@@ -237,12 +194,14 @@ impl<'a> Caster<'a> {
             return;
         };
         // The images of the tile that the ray passes over, nearest first.
-        let ends = [ray.origin_m + ray.direction * range.near_m, ray.origin_m + ray.direction * range.far_m];
+        let upright = self.scene.upright_from_world;
+        let (start, step) = (upright * ray.origin_m, upright * ray.direction);
+        let ends = [start + step * range.near_m, start + step * range.far_m];
         let span = |axis: usize| {
             let (a, b) = (ends[0][axis].min(ends[1][axis]), ends[0][axis].max(ends[1][axis]));
             let first = ((a - high[axis]) / edge).ceil() as i32;
             let last = ((b - low[axis]) / edge).floor() as i32;
-            let forward = ray.direction[axis] >= 0.0;
+            let forward = step[axis] >= 0.0;
             (first..=last).map(move |i| if forward { i } else { first + last - i })
         };
         let mut far = range.far_m;
@@ -260,9 +219,10 @@ impl<'a> Caster<'a> {
 
     /// Adds the crossings of one image of the scene; returns how far the ray still sees.
     fn collect_image(&self, ray: &Ray, near_m: f32, far_m: f32, stop: Stop, crossings: &mut Vec<Crossing>) -> f32 {
+        let upright = self.scene.upright_from_world;
         let mut limit = far_m;
-        self.bvh.traverse(ray.origin_m, ray.direction, near_m, far_m, |item, far| {
-            let Some(crossing) = self.cross(item as usize, ray, near_m, far) else { return far };
+        self.bvh.traverse(upright * ray.origin_m, upright * ray.direction, near_m, far_m, |item, far| {
+            let Some(crossing) = self.cross(item, ray, near_m, far) else { return far };
             crossings.push(crossing);
             limit = match stop {
                 _ if crossing.alpha < 1.0 => far,
@@ -274,20 +234,20 @@ impl<'a> Caster<'a> {
         limit
     }
 
-    fn cross(&self, item: usize, ray: &Ray, near_m: f32, far_m: f32) -> Option<Crossing> {
-        if item >= self.starts[1] {
-            let triangle = item - self.starts[1];
-            let depth_m = triangle_depth(self.scene.skin?.corners_m(triangle), ray)?;
-            let surface = Surface::Skin { triangle: triangle as u32 };
-            return (near_m..=far_m).contains(&depth_m).then_some(Crossing { depth_m, alpha: 1.0, surface });
-        }
-        let (set, piece) = if item < self.starts[0] { (0, item) } else { (1, item - self.starts[0]) };
-        let strands = self.strands(set);
-        let (strand, segment, cone) = cone(strands, piece);
-        let hit = cone.hit(ray, near_m, far_m)?;
-        let s = (segment as f32 + hit.s) / (strands.points_per_strand - 1) as f32;
-        let surface = Surface::Hair { set, strand: strand as u32, segment: segment as u32, s };
-        Some(Crossing { depth_m: hit.depth_m, alpha: strands.profile.opacity_at(s), surface })
+    fn cross(&self, item: u32, ray: &Ray, near_m: f32, far_m: f32) -> Option<Crossing> {
+        let piece = &self.pieces[item as usize];
+        let Some(strands) = self.strands(piece) else {
+            let depth_m = triangle_depth(self.scene.skin?.corners_m(piece.index as usize), ray)?;
+            return (near_m..=far_m).contains(&depth_m).then_some(Crossing {
+                depth_m,
+                alpha: 1.0,
+                piece: item,
+                s: 0.0,
+            });
+        };
+        let hit = piece.cone.hit(ray, near_m, far_m)?;
+        let s = piece.span[0] + (piece.span[1] - piece.span[0]) * hit.s;
+        Some(Crossing { depth_m: hit.depth_m, alpha: strands.profile.opacity_at(s), piece: item, s })
     }
 }
 

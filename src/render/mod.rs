@@ -9,6 +9,7 @@ pub mod flat;
 pub mod march;
 pub mod pelt;
 pub mod picture;
+pub mod pieces;
 pub mod rays;
 pub mod resolve;
 pub mod shell;
@@ -18,6 +19,7 @@ pub mod view;
 
 use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;
+use crate::math::Mat3;
 
 /// What is rendered.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,6 +32,9 @@ pub struct Scene<'a> {
     pub skin: Option<&'a Mesh>,
     /// Edge of a tile that repeats along x and y, m; none for a scene that does not repeat.
     pub torus_m: Option<f32>,
+    /// A linear map to a space where hair stands upright, so that boxes around it are thin. Changes how long it takes,
+    /// never what is seen. On a torus it must keep x and y.
+    pub upright_from_world: Mat3,
 }
 
 /// The part of each ray that counts, m from its origin. Hair is cut at its ends.
