@@ -85,13 +85,13 @@ fn issues(files: &[PathBuf]) -> Option<Vec<BTreeMap<(u64, String), usize>>> {
     Some(files.iter().map(counted).collect())
 }
 
-/// Kinds of errors and warnings that the output has and the input has not.
+/// Kinds of errors and warnings of which the output has more than the input.
 fn new_issues(input: &BTreeMap<(u64, String), usize>, output: &BTreeMap<(u64, String), usize>) -> Vec<String> {
-    output
-        .keys()
-        .filter(|kind| !input.contains_key(kind))
-        .map(|(severity, code)| format!("{severity} {code}"))
-        .collect()
+    let more = |(kind, count): (&(u64, String), &usize)| {
+        let before = input.get(kind).copied().unwrap_or(0);
+        (*count > before).then(|| format!("severity {} {}: {before} became {count}", kind.0, kind.1))
+    };
+    output.iter().filter_map(more).collect()
 }
 
 #[test]

@@ -9,7 +9,7 @@ const ZSTD: u32 = 2;
 /// Zstandard's level: higher ones gain nothing on hair.
 const EFFORT: i32 = 9;
 /// Most bytes a texture may unpack to.
-const MAX_BYTES: usize = 1 << 30;
+const MAX_BYTES: usize = 1 << 28;
 
 /// How texels are coded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
