@@ -132,8 +132,10 @@ fn the_khronos_validator_finds_nothing_new() {
     let Some(found) = issues(&files) else { return };
     let mut faults = Vec::new();
     for (i, asset) in assets.iter().enumerate() {
-        for output in &found[n + 3 * i..n + 3 * i + 3] {
-            let new = new_issues(&found[i], output);
+        for (k, output) in found[n + 3 * i..n + 3 * i + 3].iter().enumerate() {
+            // Shells repeat the flaws of the skin's vertices as often as there are shells.
+            let mut new = new_issues(&found[i], output);
+            new.retain(|fault| k == 0 || fault.contains(": 0 became"));
             if !new.is_empty() {
                 faults.push(format!("{}: {}", asset.document.name.display(), new.join(", ")));
             }

@@ -200,6 +200,7 @@ fn influences(
     }
     let (mut uneven, mut loose) = (0, 0);
     for entry in &mut list {
+        join_duplicates(entry);
         let sum: f32 = entry.iter().map(|&(_, w)| w).sum();
         if sum > 0.0 && sum.is_finite() {
             uneven += usize::from((sum - 1.0).abs() > 0.02);
@@ -221,4 +222,13 @@ fn influences(
         }
     }
     Ok(Some(list))
+}
+
+/// A joint named twice gets its weights in one place.
+fn join_duplicates(entry: &mut Influences) {
+    for later in 1..entry.len() {
+        if let Some(first) = (0..later).find(|&i| entry[i].0 == entry[later].0 && entry[i].1 > 0.0) {
+            entry[first].1 += std::mem::take(&mut entry[later].1);
+        }
+    }
 }
