@@ -133,10 +133,12 @@ fn triangles(document: &Document, at: &At<'_>, vertices: usize, notes: &mut Note
         }
         None => (0..vertices as u32).collect(),
     };
-    let windows = indices.windows(3).enumerate();
+    let windows = indices.windows(3);
     Ok(match at.size_or("mode", 4)? {
-        5 => windows.map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] }).collect(),
-        6 => windows.map(|(_, w)| [w[1], w[2], indices[0]]).collect(),
+        5 => {
+            windows.enumerate().map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] }).collect()
+        }
+        6 => windows.map(|w| [w[1], w[2], indices[0]]).collect(),
         _ => {
             let (triangles, rest) = indices.as_chunks::<3>();
             if !rest.is_empty() {
