@@ -67,7 +67,7 @@ fn changes(before: &Value, after: &Value, path: &str, found: &mut Vec<String>) {
                 }
             }
             let added = |key: &String| {
-                !b.contains_key(key) && !(path.is_empty() || ["extensions", "children"].contains(&key.as_str()))
+                !(b.contains_key(key) || path.is_empty() || ["extensions", "children"].contains(&key.as_str()))
             };
             found.extend(a.keys().filter(|k| added(k) && *k != NAME).map(|k| format!("{path}.{k} is new")));
         }

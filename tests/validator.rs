@@ -85,13 +85,13 @@ fn issues(files: &[PathBuf]) -> Option<Vec<BTreeMap<(u64, String), usize>>> {
     Some(files.iter().map(counted).collect())
 }
 
-/// Kinds of errors and warnings that the output has and the input has not.
+/// Kinds of errors and warnings of which the output has more than the input.
 fn new_issues(input: &BTreeMap<(u64, String), usize>, output: &BTreeMap<(u64, String), usize>) -> Vec<String> {
-    output
-        .keys()
-        .filter(|kind| !input.contains_key(kind))
-        .map(|(severity, code)| format!("{severity} {code}"))
-        .collect()
+    let more = |(kind, count): (&(u64, String), &usize)| {
+        let before = input.get(kind).copied().unwrap_or(0);
+        (*count > before).then(|| format!("severity {} {}: {before} became {count}", kind.0, kind.1))
+    };
+    output.iter().filter_map(more).collect()
 }
 
 #[test]
@@ -132,8 +132,10 @@ fn the_khronos_validator_finds_nothing_new() {
     let Some(found) = issues(&files) else { return };
     let mut faults = Vec::new();
     for (i, asset) in assets.iter().enumerate() {
-        for output in &found[n + 3 * i..n + 3 * i + 3] {
-            let new = new_issues(&found[i], output);
+        for (k, output) in found[n + 3 * i..n + 3 * i + 3].iter().enumerate() {
+            // Shells repeat the flaws of the skin's vertices as often as there are shells.
+            let mut new = new_issues(&found[i], output);
+            new.retain(|fault| k == 0 || fault.contains(": 0 became"));
             if !new.is_empty() {
                 faults.push(format!("{}: {}", asset.document.name.display(), new.join(", ")));
             }

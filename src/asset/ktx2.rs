@@ -9,7 +9,7 @@ const ZSTD: u32 = 2;
 /// Zstandard's level: higher ones gain nothing on hair.
 const EFFORT: i32 = 9;
 /// Most bytes a texture may unpack to.
-const MAX_BYTES: usize = 1 << 30;
+const MAX_BYTES: usize = 1 << 28;
 
 /// How texels are coded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,13 +46,13 @@ impl Format {
         let channels = self.channels();
         let block = 24 + 16 * channels;
         let transfer: u32 = if self == Self::Rgba8Srgb { 2 } else { 1 };
-        let mut words = vec![4 + block, 0, 2 | block << 16, 1 | 1 << 8 | transfer << 16, 0, channels, 0];
+        let mut words = vec![4 + block, 0, 2 | (block << 16), 1 | (1 << 8) | (transfer << 16), 0, channels, 0];
         for channel in 0..channels {
             // Channel ids are R 0, G 1, B 2, A 15; alpha of an sRGB format is marked as linear.
             let alpha = channel == 3;
             let id = if alpha { 15 } else { channel };
             let linear = if alpha && transfer == 2 { 0x10 } else { 0 };
-            words.extend([channel * 8 | 7 << 16 | (id | linear) << 24, 0, 0, 255]);
+            words.extend([(channel * 8) | (7 << 16) | ((id | linear) << 24), 0, 0, 255]);
         }
         words.iter().flat_map(|word: &u32| word.to_le_bytes()).collect()
     }
@@ -143,7 +143,7 @@ pub fn decode(bytes: &[u8], format: Format) -> Result<Vec<Vec<Image8>>> {
     }
     let mut mips = Vec::new();
     for mip in 0..levels as usize {
-        let long = |at: usize| word(at).zip(word(at + 4)).map(|(low, high)| u64::from(low) | u64::from(high) << 32);
+        let long = |at: usize| word(at).zip(word(at + 4)).map(|(low, high)| u64::from(low) | (u64::from(high) << 32));
         let entry = 80 + 24 * mip;
         let (width, height) = ((width >> mip).max(1), (height >> mip).max(1));
         let texels =

@@ -133,10 +133,12 @@ fn triangles(document: &Document, at: &At<'_>, vertices: usize, notes: &mut Note
         }
         None => (0..vertices as u32).collect(),
     };
-    let windows = indices.windows(3).enumerate();
+    let windows = indices.windows(3);
     Ok(match at.size_or("mode", 4)? {
-        5 => windows.map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] }).collect(),
-        6 => windows.map(|(_, w)| [w[1], w[2], indices[0]]).collect(),
+        5 => {
+            windows.enumerate().map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] }).collect()
+        }
+        6 => windows.map(|w| [w[1], w[2], indices[0]]).collect(),
         _ => {
             let (triangles, rest) = indices.as_chunks::<3>();
             if !rest.is_empty() {
@@ -200,6 +202,7 @@ fn influences(
     }
     let (mut uneven, mut loose) = (0, 0);
     for entry in &mut list {
+        join_duplicates(entry);
         let sum: f32 = entry.iter().map(|&(_, w)| w).sum();
         if sum > 0.0 && sum.is_finite() {
             uneven += usize::from((sum - 1.0).abs() > 0.02);
@@ -221,4 +224,13 @@ fn influences(
         }
     }
     Ok(Some(list))
+}
+
+/// A joint named twice gets its weights in one place.
+fn join_duplicates(entry: &mut Influences) {
+    for later in 1..entry.len() {
+        if let Some(first) = (0..later).find(|&i| entry[i].0 == entry[later].0 && entry[i].1 > 0.0) {
+            entry[first].1 += std::mem::take(&mut entry[later].1);
+        }
+    }
 }

@@ -186,11 +186,14 @@ fn place(document: &mut Document, node: usize, shells: usize, name: &str) -> Res
     let added_index = document.push("nodes", added);
     if base.get("skin").is_some() {
         for scene in scenes_with(document, node)? {
-            document.json["scenes"][scene]["nodes"].as_array_mut().map(|list| list.push(json!(added_index)));
+            if let Some(list) = document.json["scenes"][scene]["nodes"].as_array_mut() {
+                list.push(json!(added_index));
+            }
         }
-    } else if let Some(owner) = document.json["nodes"][node].as_object_mut() {
-        let children = owner.entry("children").or_insert_with(|| json!([]));
-        children.as_array_mut().map(|list| list.push(json!(added_index)));
+    } else if let Some(owner) = document.json["nodes"][node].as_object_mut()
+        && let Some(list) = owner.entry("children").or_insert_with(|| json!([])).as_array_mut()
+    {
+        list.push(json!(added_index));
     }
     // Weights are animated on the node, so the shells' node needs the same channels.
     let animations = document.json.get_mut("animations").and_then(Value::as_array_mut);

@@ -8,7 +8,7 @@ mod write;
 
 pub use fallback::Fallback;
 pub use flatten::shells as flatten_shells;
-pub use read::read_coat;
+pub use read::{coat_of, read_coat};
 use write::set_extension;
 pub use write::{dress, write_coat};
 

@@ -19,7 +19,11 @@ pub fn read_coat(path: &Path) -> Result<(Asset, Coat)> {
     Ok((asset, coat))
 }
 
-fn coat_of(asset: &Asset) -> Result<Coat> {
+/// The coat that an asset wears.
+///
+/// # Errors
+/// When it has none, or one that contradicts itself.
+pub fn coat_of(asset: &Asset) -> Result<Coat> {
     let document = &asset.document;
     let root = document.root();
     let Some(extension) = root.get("extensions").and_then(|e| e.get(NAME)) else {

@@ -68,7 +68,11 @@ pub fn read(document: &Document, at: &At<'_>) -> Result<Tile> {
     let single = |key: &str, format| -> Result<Vec<Image8>> {
         Ok(images(&fin, key, format)?.into_iter().filter_map(|mut mip| mip.pop()).collect())
     };
-    let float = |owner: &At<'_>, key: &str| owner.need(key)?.number().map(|n| n as f32);
+    let positive = |at: &At<'_>| -> Result<f32> {
+        let number = at.number()? as f32;
+        if number > 0.0 && number.is_finite() { Ok(number) } else { Err(at.fault("a number above 0")) }
+    };
+    let float = |owner: &At<'_>, key: &str| positive(&owner.need(key)?);
     let angles = shells.need("gainAngles")?;
     if angles.numbers::<9>()?.iter().zip(GAIN_ANGLES_DEG).any(|(&a, b)| (a - f64::from(b)).abs() > 1e-6) {
         return Err(angles.fault(&format!("{GAIN_ANGLES_DEG:?}")));
@@ -77,10 +81,20 @@ pub fn read(document: &Document, at: &At<'_>) -> Result<Tile> {
     let gains = gains.iter().map(|g| Ok(g.numbers::<9>()?.map(|n| n as f32))).collect::<Result<Vec<_>>>()?;
     let slopes = shells.list("slopes")?;
     let slopes = slopes.iter().map(|s| s.numbers::<2>().map(|n| Vec2::new(n[0] as f32, n[1] as f32)));
-    let albedo = array("albedo", Format::Rgba8Srgb)?;
+    let (albedo, medium, ends) =
+        (array("albedo", Format::Rgba8Srgb)?, array("medium", Format::Rgba8)?, array("ends", Format::R8)?);
+    let (fin_albedo, fin_tangent) = (single("albedo", Format::Rgba8Srgb)?, single("tangent", Format::Rgba8)?);
+    let size = fin.need("size")?.numbers::<2>()?.map(|n| n as u32);
+    let alike = |list: &[Image8]| list.first().is_some_and(|image| [image.width, image.height] == size);
+    if fin_albedo.len() != fin_tangent.len() || !alike(&fin_albedo) || !alike(&fin_tangent) {
+        return Err(fin.need("tangent")?.fault("textures of the stated size with equally many mips"));
+    }
+    if medium.len() != albedo.len() || ends.len() != albedo.len() {
+        return Err(shells.need("medium")?.fault("as many mips as the other textures"));
+    }
     let slopes = slopes.collect::<Result<Vec<_>>>()?;
     let scales = shells.list("extinctionScales")?;
-    let scales = scales.iter().map(|s| Ok(s.number()? as f32)).collect::<Result<Vec<_>>>()?;
+    let scales = scales.iter().map(positive).collect::<Result<Vec<_>>>()?;
     if gains.len() != albedo.len()
         || scales.len() != albedo.len()
         || slopes.len() != albedo[0].len()
@@ -98,16 +112,16 @@ pub fn read(document: &Document, at: &At<'_>) -> Result<Tile> {
             gains,
             slopes,
             extinction_scales_per_m: scales,
-            medium: array("medium", Format::Rgba8)?,
-            ends: array("ends", Format::R8)?,
             albedo,
+            medium,
+            ends,
         },
         fin: FinTexture {
-            size: fin.need("size")?.numbers::<2>()?.map(|n| n as u32),
+            size,
             width_m: float(&fin, "width")?,
             thickness_m: float(&fin, "thickness")?,
-            albedo: single("albedo", Format::Rgba8Srgb)?,
-            tangent: single("tangent", Format::Rgba8)?,
+            albedo: fin_albedo,
+            tangent: fin_tangent,
         },
     })
 }
