@@ -118,7 +118,7 @@ fn atlas_charts_hold_the_sphere_without_overlap() {
 #[test]
 fn every_shared_mesh_is_covered_by_its_atlas() {
     let Some(shared) = shared() else { return };
-    for folder in ["assets/real", "assets/hard"] {
+    for folder in ["real", "hard"] {
         let mut paths: Vec<_> =
             std::fs::read_dir(shared.join(folder)).expect("readable").map(|e| e.expect("entry").path()).collect();
         paths.sort();
@@ -140,7 +140,7 @@ const LAPPED: Parameterisation = Parameterisation::Lapped { seed: 1 };
 #[test]
 fn lapped_patches_cover_every_shared_mesh_and_lie_flat() {
     let Some(shared) = shared() else { return };
-    for folder in ["assets/real", "assets/hard"] {
+    for folder in ["real", "hard"] {
         let mut paths: Vec<_> =
             std::fs::read_dir(shared.join(folder)).expect("readable").map(|e| e.expect("entry").path()).collect();
         paths.sort();

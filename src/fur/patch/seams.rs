@@ -110,9 +110,9 @@ fn window(
             let [i, j] = [column as f64 + 0.5 - 0.5 * WINDOW as f64, row as f64 + 0.5];
             let p = middle + (along * i + inwards * j) * texel_m;
             let seen = sample(t as u32, (uv[0] + x * p.x + y * p.y).as_vec2() + moved);
-            for v in 0..3 {
-                sum[v] += f64::from(seen[v]);
-                squares[v] += f64::from(seen[v]).powi(2);
+            for ((sum, square), value) in sum.iter_mut().zip(&mut squares).zip(seen.map(f64::from)) {
+                *sum += value;
+                *square += value * value;
             }
         }
     }

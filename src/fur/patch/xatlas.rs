@@ -136,13 +136,32 @@ unsafe extern "C" {
 
 const INDEX_U32: c_int = 1;
 
-/// Destroys the atlas also where copying its results panics.
+/// Destroys the atlas when it goes, also where copying its results panics.
 struct Owned(*mut AtlasHeader);
 
+// SAFETY: xatlas ties no atlas to the thread that made it.
+unsafe impl Send for Owned {}
+
+impl Owned {
+    fn destroy(self) {
+        let pointer = self.0;
+        std::mem::forget(self);
+        // SAFETY: the pointer came from `create`, and forgetting its owner leaves this the only call.
+        unsafe { destroy(pointer) }
+    }
+}
+
 impl Drop for Owned {
+    /// Leaves the work to a thread of its own: in this version, a worker that falls asleep just as xatlas stops its
+    /// workers is never woken, and `Destroy` waits for it forever (seen once in some hundred calls on a busy machine).
+    /// Then one sleeping thread and the atlas are lost, not the caller. Where no thread can be had the atlas is lost too.
     fn drop(&mut self) {
-        // SAFETY: the pointer came from `create` and is destroyed once.
-        unsafe { destroy(self.0) }
+        let atlas = Self(std::mem::replace(&mut self.0, std::ptr::null_mut()));
+        if atlas.0.is_null() {
+            return;
+        }
+        let atlas = std::mem::ManuallyDrop::new(atlas);
+        let _ = std::thread::Builder::new().spawn(move || std::mem::ManuallyDrop::into_inner(atlas).destroy());
     }
 }
 

@@ -32,16 +32,16 @@ pub(super) fn flatten(surface: &Surface, patch: &mut Patch, effort: Effort) {
     let springs: Vec<[f64; 3]> = patch.faces.iter().map(|&f| weights(surface.faces[f as usize].corners_m())).collect();
     let mut lower = Vec::with_capacity(12 * patch.faces.len());
     for (corners, weights) in patch.corners.iter().zip(&springs) {
-        for k in 0..3 {
+        for (k, &weight) in weights.iter().enumerate() {
             let [i, j] = [corners[k] as usize, corners[(k + 1) % 3] as usize];
             // Vertex 0 is held at the origin, so that it has no row.
             for v in [i, j] {
                 if v > 0 {
-                    lower.push((v - 1, v - 1, weights[k]));
+                    lower.push((v - 1, v - 1, weight));
                 }
             }
             if i.min(j) > 0 && i != j {
-                lower.push((i.max(j) - 1, i.min(j) - 1, -weights[k]));
+                lower.push((i.max(j) - 1, i.min(j) - 1, -weight));
             }
         }
     }
