@@ -114,3 +114,35 @@ fn a_struct_out_of_step_with_its_shader_shows() {
         assert_ne!(in_shader(&parse(&format!("struct S {{ {fault} }} {uses}")), "S").as_ref(), Some(&rust), "{fault}");
     }
 }
+
+#[test]
+fn twins_tell_a_law_that_is_off_by_a_tenth() {
+    use crate::twins::{alike, difference};
+    let cpu: Vec<f32> = (0..100).map(|i| 0.2 + 0.006 * i as f32).collect();
+    let picture = |change: &dyn Fn(f32) -> f32| {
+        let pixels = cpu.iter().map(|&a| [0.0, 0.0, 0.0, change(a)]).collect();
+        furrier::runtime::Picture { size: [10, 10], pixels }
+    };
+    assert!(alike(difference(&cpu, &picture(&|a| a))));
+    // A tenth more optical depth, a constant opacity with the right mean, nothing drawn, a pixel never written.
+    assert!(!alike(difference(&cpu, &picture(&|a| 1.0 - (1.0 - a).powf(1.1)))));
+    assert!(!alike(difference(&cpu, &picture(&|_| 0.497))));
+    assert!(!alike(difference(&cpu, &picture(&|_| 0.0))));
+    assert!(!alike(difference(&cpu, &picture(&|a| if a == cpu[50] { f32::NAN } else { a }))));
+}
+
+#[test]
+fn the_golden_ball_tells_small_changes() {
+    use crate::runtime::like_golden;
+    let of = |other| compare(&picture(), &other).unwrap();
+    assert!(like_golden(&of(picture())));
+    assert!(!like_golden(&of(changed(|c| c * 1.04))));
+    assert!(!like_golden(&of(changed(|c| c * Vec3::new(1.15, 1.0, 0.85)))));
+    let mut thinner = picture();
+    thinner.alpha.iter_mut().for_each(|a| *a *= 0.98);
+    assert!(!like_golden(&of(thinner)));
+    let mut shifted = picture();
+    shifted.colour.rotate_right(1);
+    shifted.alpha.rotate_right(1);
+    assert!(!like_golden(&of(shifted)));
+}

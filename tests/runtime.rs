@@ -1,43 +1,23 @@
-//! Pictures of hand-made coats.
+//! The runtime's pictures of hand-made coats: order, light, what is shown, and a golden one.
 
 use crate::coats;
 use furrier::data::camera::Camera;
+use furrier::data::coat::Tile;
+use furrier::data::image::{Image8, srgb_from_linear, unorm8};
+use furrier::error::Kind;
 use furrier::gpu::{Choice, Gpu};
 use furrier::math::{DVec3, Vec3, Vec4};
+use furrier::metrics::compare::{Difference, Light, compare, load};
 use furrier::runtime::gpu::Renderer;
 use furrier::runtime::{Picture, Show, View};
 use furrier::shade::light::Directional;
+use std::path::Path;
 
-pub fn save(picture: &Picture, name: &str) {
-    let Ok(folder) = std::env::var("FURRIER_PICTURES") else { return };
-    let bytes: Vec<u8> = picture
-        .pixels
-        .iter()
-        .flat_map(|p| {
-            (0..3).map(|c| {
-                furrier::data::image::unorm8(furrier::data::image::srgb_from_linear(
-                    (p[c] + 0.6 * (1.0 - p[3])).clamp(0.0, 1.0),
-                ))
-            })
-        })
-        .collect();
-    image::save_buffer(
-        format!("{folder}/{name}.png"),
-        &bytes,
-        picture.size[0],
-        picture.size[1],
-        image::ColorType::Rgb8,
-    )
-    .unwrap();
-}
-
-fn look(eye: Vec3, target: Vec3, vfov_deg: f64, size: [u32; 2]) -> View {
-    let aspect = size[0] as f32 / size[1] as f32;
-    let d = eye.distance(target);
-    let camera = Camera { eye: eye.as_dvec3().into(), target: target.as_dvec3().into(), up: [0.0, 1.0, 0.0], vfov_deg };
-    let clip = camera.clip_from_world(DVec3::ZERO, f64::from(aspect), f64::from(d) * 0.1, f64::from(d) * 3.0).as_mat4();
+fn look(eye: Vec3, size: [u32; 2]) -> View {
+    let camera = Camera { eye: eye.as_dvec3().into(), target: [0.0; 3], up: [0.0, 1.0, 0.0], vfov_deg: 30.0 };
+    let (far, aspect) = (f64::from(eye.length()) * 2.0, f64::from(size[0]) / f64::from(size[1]));
     View {
-        clip_from_world: clip,
+        clip_from_world: camera.clip_from_world(DVec3::ZERO, aspect, far * 0.05, far).as_mat4(),
         eye: Vec4::from((eye, 1.0)),
         size,
         lights: vec![Directional { to_light: Vec3::new(-0.5, 0.7, 0.6).normalize(), irradiance: Vec3::splat(3.0) }],
@@ -45,31 +25,124 @@ fn look(eye: Vec3, target: Vec3, vfov_deg: f64, size: [u32; 2]) -> View {
     }
 }
 
-#[test]
-fn first_pictures() {
+fn small_tile() -> Tile {
+    coats::tile(&coats::fox(), 0.008, 8, 64, 1)
+}
+
+/// The golden scene: a small furred ball.
+pub fn ball() -> Picture {
     let gpu = Gpu::open(&Choice::Auto).unwrap();
-    let tile = coats::tile(&coats::fox(), 0.008, 16, 128, 1);
-    let tiles = [tile];
+    let tiles = [small_tile()];
+    let ball = coats::sphere(0.05, 10, 0.5, &tiles[0]);
     let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
-    let sphere = coats::sphere(0.06, 24, 0.5, &tiles[0]);
-    let plane = coats::plane(0.1, 8, 0.5, &tiles[0]);
-    for (name, furred, eye) in
-        [("sphere", &sphere, Vec3::new(0.05, 0.05, 0.3)), ("plane", &plane, Vec3::new(0.0, -0.15, 0.1))]
-    {
-        for (kind, show) in [
-            ("all", Show::default()),
-            ("shells", Show { fins: false, ..Show::default() }),
-            ("fins", Show { shells: false, ..Show::default() }),
-        ] {
-            let start = std::time::Instant::now();
-            let drawn = renderer.draw(&furred.scene(&tiles), &look(eye, Vec3::ZERO, 30.0, [512, 512]), show).unwrap();
-            eprintln!(
-                "{name} {kind}: {:?}, coverage {}, {:?}",
-                start.elapsed(),
-                drawn.picture.coverage(),
-                drawn.passes
-            );
-            save(&drawn.picture, &format!("{name}-{kind}"));
-        }
+    renderer.draw(&ball.scene(&tiles), &look(Vec3::new(0.05, 0.05, 0.26), [96, 96]), Show::default()).unwrap().picture
+}
+
+fn light(picture: &Picture) -> Light {
+    Light {
+        width: picture.size[0] as usize,
+        height: picture.size[1] as usize,
+        colour: picture.pixels.iter().map(|p| Vec3::new(p[0], p[1], p[2])).collect(),
+        alpha: picture.pixels.iter().map(|p| p[3]).collect(),
     }
+}
+
+fn coded(light: &Light) -> Image8 {
+    let mut image = Image8::new(light.width as u32, light.height as u32, 4);
+    for ((out, colour), &alpha) in image.pixels.chunks_exact_mut(4).zip(&light.colour).zip(&light.alpha) {
+        let straight = *colour / alpha.max(1e-6);
+        out[..3].copy_from_slice(&straight.to_array().map(|c| unorm8(srgb_from_linear(c))));
+        out[3] = unorm8(alpha);
+    }
+    image
+}
+
+/// Compares with the golden picture `name`; FURRIER_UPDATE_GOLDEN=1 writes it instead. A missing one fails.
+fn against_golden(picture: &Picture, name: &str) -> Difference {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
+    let light = light(picture);
+    if std::env::var_os("FURRIER_UPDATE_GOLDEN").is_some() {
+        let image = coded(&light);
+        image::save_buffer(&path, &image.pixels, image.width, image.height, image::ColorType::Rgba8).unwrap();
+    }
+    compare(&load(&path).unwrap(), &light).unwrap()
+}
+
+/// What two adapters may differ by, and eight bits.
+pub fn like_golden(difference: &Difference) -> bool {
+    difference.flip < 0.02
+        && difference.bias.abs() < 0.02
+        && (difference.coverage[0] - difference.coverage[1]).abs() < 0.005
+}
+
+#[test]
+fn the_ball_looks_as_it_did() {
+    let difference = against_golden(&ball(), "ball.png");
+    println!("{difference:?}");
+    assert!(like_golden(&difference), "{difference:?}");
+}
+
+#[test]
+fn every_kind_of_geometry_adds_to_the_picture() {
+    let gpu = Gpu::open(&Choice::Auto).unwrap();
+    let tiles = [small_tile()];
+    let ball = coats::sphere(0.05, 10, 0.5, &tiles[0]);
+    let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
+    let view = look(Vec3::new(0.05, 0.05, 0.26), [64, 64]);
+    let none = Show { skin: false, shells: false, fins: false };
+    let coverage = |show| renderer.draw(&ball.scene(&tiles), &view, show).unwrap().picture.coverage();
+    assert_eq!(coverage(none), 0.0);
+    let skin = coverage(Show { skin: true, ..none });
+    let shells = coverage(Show { shells: true, ..none });
+    let fins = coverage(Show { fins: true, ..none });
+    let all = coverage(Show::default());
+    assert!(skin > 0.3 && shells > skin && fins > 0.05 && all > skin + 0.05, "{skin} {shells} {fins} {all}");
+}
+
+#[test]
+fn light_adds_up_and_darkness_is_dark() {
+    let gpu = Gpu::open(&Choice::Auto).unwrap();
+    let tiles = [small_tile()];
+    let ball = coats::sphere(0.05, 10, 0.5, &tiles[0]);
+    let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
+    let mut view = look(Vec3::new(0.05, 0.05, 0.26), [48, 48]);
+    let mut sum = |lights: &[Directional], ambient: f32| -> f64 {
+        (view.lights, view.ambient) = (lights.to_vec(), Vec3::splat(ambient));
+        let picture = renderer.draw(&ball.scene(&tiles), &view, Show::default()).unwrap().picture;
+        picture.pixels.iter().map(|p| f64::from(p[0] + p[1] + p[2])).sum()
+    };
+    let above = Directional { to_light: Vec3::Y, irradiance: Vec3::ONE };
+    let left = Directional { to_light: Vec3::NEG_X, irradiance: Vec3::splat(2.0) };
+    let (a, b, c) = (sum(&[above], 0.0), sum(&[left], 0.0), sum(&[], 0.3));
+    assert_eq!(sum(&[], 0.0), 0.0);
+    let all = sum(&[above, left], 0.3);
+    assert!((all / (a + b + c) - 1.0).abs() < 5e-3, "{all} for {a} + {b} + {c}");
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused() {
+    let gpu = Gpu::open(&Choice::Auto).unwrap();
+    let tiles = [small_tile()];
+    let ball = coats::sphere(0.05, 4, 0.0, &tiles[0]);
+    let kind = |result: furrier::Result<_>| result.map(|_: furrier::runtime::gpu::Drawn| ()).unwrap_err().kind;
+    let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
+    let view = look(Vec3::Z, [16, 16]);
+    for view in [View { size: [0, 16], ..view.clone() }, View { size: [1_000_000, 16], ..view.clone() }] {
+        assert_eq!(kind(renderer.draw(&ball.scene(&tiles), &view, Show::default())), Kind::Usage);
+    }
+    let many = View { lights: vec![view.lights[0]; 17], ..view };
+    assert_eq!(kind(renderer.draw(&ball.scene(&tiles), &many, Show::default())), Kind::Usage);
+    assert_eq!(Renderer::new(&gpu, &tiles, 9).err().unwrap().kind, Kind::Usage);
+    let mut broken = small_tile();
+    broken.shells.medium[1].pop();
+    assert_eq!(Renderer::new(&gpu, &[broken], 1).err().unwrap().kind, Kind::Input);
+}
+
+#[test]
+fn an_adapter_that_is_not_there_is_named() {
+    let error = Gpu::open(&"gpu:no such adapter".parse().unwrap()).err().unwrap();
+    assert_eq!(error.kind, Kind::Device);
+    assert!(error.found.unwrap().contains("no such adapter") && error.hint.is_some());
+    assert!("cuda".parse::<Choice>().unwrap_err().expected.is_some());
+    assert!(furrier::gpu::missing_adapter_hint().contains("mesa-vulkan-drivers") || !cfg!(target_os = "linux"));
 }

@@ -1,67 +1,175 @@
-//! Pictures of assets with coats: framing, animation, sheets.
+//! Pictures of assets with coats: framing, animation, contact sheets, reports.
 
 use crate::coats;
-use furrier::asset::{self, Asset};
-use furrier::data::coat::{Coat, CoatPrimitive, FinEdge};
-use furrier::math::{Vec2, Vec4};
-use furrier::viewer::{self, Options};
+use furrier::asset::{self, Asset, Pose};
+use furrier::data::camera::Camera;
+use furrier::data::coat::{Coat, CoatPrimitive, Tile};
+use furrier::math::{Vec2, Vec3, Vec4};
+use furrier::runtime::{Picture, Show};
+use furrier::viewer::{self, Framing, Options, Orbit, parse_light, parse_show, stage};
 
-/// `tile` worn on every part of `asset` that is not bare, hair along the normals, one fin on each triangle's first edge.
-pub fn dressed(asset: &Asset, tile: furrier::data::coat::Tile, metres_per_unit: f64) -> Coat {
-    let mut coat = Coat { metres_per_unit, ..Coat::default() };
+/// `tile` worn on every part of `asset` that is not bare, hair along the normals, no fins.
+fn dressed(asset: &Asset, tile: Tile) -> Coat {
+    let mut coat = Coat { metres_per_unit: 1.0, ..Coat::default() };
     for part in asset.parts.iter().filter(|part| !asset::is_bare(&part.material_name)) {
-        let mesh = part.mesh(metres_per_unit).unwrap();
-        let count = mesh.positions_m.len();
-        let normals = mesh.smooth_normals();
-        let offset = (0..count).map(|v| part.local_offset(v, normals[v] * tile.height_m, metres_per_unit)).collect();
-        let edge = |a: u32, b: u32| mesh.positions_m[a as usize].distance(mesh.positions_m[b as usize]);
-        let fins = mesh.triangles.iter().map(|&[a, b, c]| FinEdge {
-            ends: [a, b],
-            opposite: [c, c],
-            u: [0.0, edge(a, b) / tile.fin.width_m],
-            thickness: 0.5 * edge(b, c) / tile.fin.thickness_m,
-        });
-        let uv = |v: usize| {
-            Vec2::new(mesh.positions_m[v].x, mesh.positions_m[v].y + 0.7 * mesh.positions_m[v].z) / tile.edge_m
-        };
+        let mesh = part.mesh(1.0).unwrap();
+        let (count, normals) = (mesh.positions_m.len(), mesh.smooth_normals());
+        let uv = |p: &Vec3| Vec2::new(p.x, p.y + 0.7 * p.z) / tile.edge_m;
         coat.primitives.push(CoatPrimitive {
             mesh: part.mesh,
             primitive: part.primitive,
             tile: 0,
             base_vertex: (0..count as u32).collect(),
-            uv: (0..count).map(uv).collect(),
+            uv: mesh.positions_m.iter().map(uv).collect(),
             patch: vec![0; count],
-            offset,
+            offset: (0..count).map(|v| part.local_offset(v, normals[v] * tile.height_m, 1.0)).collect(),
             tint: vec![Vec4::ONE; count],
             triangles: part.stored.triangles.clone(),
-            fins: fins.collect(),
+            fins: vec![],
         });
     }
     coat.tiles.push(tile);
     coat
 }
 
-fn save(image: &furrier::data::image::Image8, name: &str) {
-    if let Ok(folder) = std::env::var("FURRIER_PICTURES") {
-        image::save_buffer(
-            format!("{folder}/{name}.png"),
-            &image.pixels,
-            image.width,
-            image.height,
-            image::ColorType::Rgba8,
-        )
-        .unwrap();
+fn creature() -> (Asset, Coat) {
+    let asset = asset::load("sample:creature").unwrap();
+    let coat = dressed(&asset, coats::tile(&coats::fox()[..1], 0.008, 4, 32, 1));
+    (asset, coat)
+}
+
+fn small() -> Options {
+    Options { size: [96, 72], ..Options::default() }
+}
+
+/// The rows and columns that hold anything: top, bottom, left, right.
+fn extent(picture: &Picture) -> [usize; 4] {
+    let (width, height) = (picture.size[0] as usize, picture.size[1] as usize);
+    let lit = |x: usize, y: usize| picture.pixels[y * width + x][3] > 0.02;
+    let row = |y: &usize| (0..width).any(|x| lit(x, *y));
+    let column = |x: &usize| (0..height).any(|y| lit(*x, y));
+    let rows = ((0..height).find(row).unwrap(), (0..height).rev().find(row).unwrap());
+    let columns = ((0..width).find(column).unwrap(), (0..width).rev().find(column).unwrap());
+    [rows.0, rows.1, columns.0, columns.1]
+}
+
+#[test]
+fn the_whole_asset_fits_from_every_side() {
+    let (asset, coat) = creature();
+    for (azimuth_deg, elevation_deg) in [(0.0, 0.0), (35.0, 12.0), (120.0, -40.0), (260.0, 80.0)] {
+        let framing = Framing::Orbit(Orbit { azimuth_deg, elevation_deg, distance: 1.0 });
+        let shot = viewer::screenshot(&asset, &coat, &Options { framing, ..small() }).unwrap();
+        let [top, bottom, left, right] = extent(&shot.picture);
+        assert!(top > 0 && bottom < 71 && left > 0 && right < 95, "cut off at {azimuth_deg}, {elevation_deg}");
+        assert!(bottom - top > 50 || right - left > 70, "small at {azimuth_deg}, {elevation_deg}");
     }
 }
 
 #[test]
-fn samples() {
-    for name in ["creature", "torus"] {
-        let asset = asset::load(&format!("sample:{name}")).unwrap();
-        let coat = dressed(&asset, coats::tile(&coats::fox(), 0.008, 16, 128, 1), 1.0);
-        let options = Options { size: [640, 480], ..Options::default() };
-        let shot = viewer::screenshot(&asset, &coat, &options).unwrap();
-        println!("{name}: {}", serde_json::to_string(&shot.report).unwrap());
-        save(&shot.image, name);
+fn shells_move_with_the_skin() {
+    let (asset, coat) = creature();
+    let animation = asset.animation_names().into_iter().next().unwrap();
+    let index = asset.animation(&animation).unwrap();
+    let points = |pose: &Pose| stage::points_m(&stage::scene(&asset, &coat, &Default::default(), pose));
+    let end_s = asset.duration_s(index).unwrap();
+    let rest = points(&asset.rest_pose().unwrap());
+    let middle = rest.iter().sum::<Vec3>() / rest.len() as f32;
+    let reach = rest.iter().map(|p| p.distance(middle)).fold(0.0, f32::max);
+    // A fixed camera, so that only the animation moves anything.
+    let eye = middle + Vec3::new(0.8, 0.2, 1.0).normalize() * reach * 4.0;
+    let origin = asset.parts[0].centre_units;
+    let at = |p: Vec3| (p.as_dvec3() + origin).into();
+    let camera = Camera { eye: at(eye), target: at(middle), up: [0.0, 1.0, 0.0], vfov_deg: 40.0 };
+    let shot = |seconds: Option<f64>, show: Show| {
+        let moment = seconds.map(|s| (animation.clone(), s));
+        let options = Options { framing: Framing::Camera(camera), show, moment, ..small() };
+        viewer::screenshot(&asset, &coat, &options).unwrap().picture
+    };
+    let difference =
+        |a: &Picture, b: &Picture| a.pixels.iter().zip(&b.pixels).map(|(a, b)| (a[3] - b[3]).abs()).sum::<f32>();
+    let skin = Show { skin: true, shells: false, fins: false };
+    let skin_at_rest = shot(None, skin);
+    // The moment at which points are farthest from where they rest.
+    let travel = |s: f64| {
+        let posed = points(&asset.pose(index, s).unwrap());
+        posed.iter().zip(&rest).map(|(a, b)| a.distance(*b)).sum::<f32>()
+    };
+    let moved_s =
+        (1..20).map(|i| end_s * f64::from(i) / 20.0).max_by(|&a, &b| travel(a).total_cmp(&travel(b))).unwrap();
+    let skin_moves = difference(&skin_at_rest, &shot(Some(moved_s), skin));
+    let (rest_shot, moved) = (shot(None, Show::default()), shot(Some(moved_s), Show::default()));
+    assert!(skin_moves > 20.0 && difference(&rest_shot, &moved) > 0.5 * skin_moves, "skin moves {skin_moves}");
+    // Hair that stayed behind would stand where skin was: beyond a hair's length of the skin nothing may be.
+    let skin_moved = shot(Some(moved_s), skin);
+    let near = |i: usize| {
+        let (x, y) = ((i % 96) as i64, (i / 96) as i64);
+        let reach = 5;
+        (-reach..=reach).any(|dy| {
+            (-reach..=reach).any(|dx| {
+                let (x, y) = (x + dx, y + dy);
+                (0..96).contains(&x) && (0..72).contains(&y) && skin_moved.pixels[(y * 96 + x) as usize][3] > 0.0
+            })
+        })
+    };
+    let stray = (0..moved.pixels.len()).filter(|&i| moved.pixels[i][3] > 0.02 && !near(i)).count();
+    assert_eq!(stray, 0, "hair far from the skin");
+}
+
+#[test]
+fn a_sheet_holds_every_view() {
+    let (asset, coat) = creature();
+    let shot = viewer::turntable(&asset, &coat, &small(), 3).unwrap();
+    assert_eq!(shot.picture.size, [192, 144]);
+    assert_eq!(shot.report.counts["pictures"], 3);
+    let cell = |x: usize, y: usize| {
+        let rows = (y * 72..y * 72 + 72).flat_map(|row| (x * 96..x * 96 + 96).map(move |column| row * 192 + column));
+        rows.map(|i| shot.picture.pixels[i][3]).sum::<f32>()
+    };
+    assert!(cell(0, 0) > 500.0 && cell(1, 0) > 500.0 && cell(0, 1) > 500.0);
+    assert_eq!(cell(1, 1), 0.0);
+    let front = viewer::screenshot(&asset, &coat, &small()).unwrap().picture;
+    for (sheet_row, row) in shot.picture.pixels.chunks_exact(192).zip(front.pixels.chunks_exact(96)) {
+        assert_eq!(&sheet_row[..96], row);
+    }
+    assert!(viewer::turntable(&asset, &coat, &small(), 0).is_err());
+}
+
+#[test]
+fn a_report_says_what_was_drawn() {
+    let (asset, coat) = creature();
+    let report = viewer::screenshot(&asset, &coat, &small()).unwrap().report;
+    for step in ["open device", "draw skin", "draw far shells", "draw fins", "draw near shells", "develop"] {
+        assert!(report.steps.iter().any(|s| s.name == step), "{step} is missing");
+    }
+    let furred: u64 = coat.primitives.iter().map(|p| p.triangles.len() as u64).sum();
+    let all: u64 = asset.parts.iter().map(|p| p.stored.triangles.len() as u64).sum();
+    // Skin once, three slabs from either side.
+    assert_eq!(report.counts["triangles"], all + 6 * furred);
+    assert!(!report.device.is_empty() && report.total_ms > 0.0);
+}
+
+#[test]
+fn flags_are_read_or_refused() {
+    assert_eq!(parse_show("skin, fins").unwrap(), Show { skin: true, shells: false, fins: true });
+    assert!(parse_show("skin,hair").unwrap_err().found.unwrap().contains("hair"));
+    let light = parse_light("dir:0,-2,0:1,2,3").unwrap();
+    assert_eq!((light.to_light, light.irradiance), (Vec3::Y, Vec3::new(1.0, 2.0, 3.0)));
+    for bad in
+        ["0,-1,0:1,1,1", "dir:0,0,0:1,1,1", "dir:0,1,0:1,1", "dir:0,1,x:1,1,1", "dir:0,1,0:-1,0,0", "dir:1,1,1,1:1,1,1"]
+    {
+        assert!(parse_light(bad).is_err(), "{bad}");
+    }
+    assert_eq!("90,-10,2".parse::<Orbit>().unwrap(), Orbit { azimuth_deg: 90.0, elevation_deg: -10.0, distance: 2.0 });
+    for bad in ["", "1,2", "1,90,1", "1,2,0", "nan,0,1", "1,2,3,4"] {
+        assert!(bad.parse::<Orbit>().is_err(), "{bad}");
+    }
+    assert!(Camera::from_json(r#"{"eye": [0,0,1], "target": [0,0,0]}"#).is_ok());
+    for bad in [
+        r#"{"eye": [0,0,1], "target": [0,0,1]}"#,
+        r#"{"eye": [0,1,0], "target": [0,0,0]}"#,
+        r#"{"eye": [0,0,1], "target": [0,0,0], "fov": 40}"#,
+        r#"{"eye": [0,0,1], "target": [0,0,0], "vfov_deg": 180}"#,
+    ] {
+        assert!(Camera::from_json(bad).is_err(), "{bad}");
     }
 }
