@@ -12,7 +12,7 @@ const MOST_MEMORY_KIB: u32 = 2 << 20;
 
 /// Options for a bake whose picture does not matter: few texels, few and short hairs.
 #[rustfmt::skip]
-const SMALL: &[&str] = &[
+pub const SMALL: &[&str] = &[
     "--threads", "4", "--layers", "4", "--texture-size", "16",
     "--set", "fins.texture_width=16", "--set", "fins.texture_height=16", "--set", "shells.tile_mm=8",
     "--set", "guard.density_per_cm2=40", "--set", "undercoat.density_per_cm2=200",
