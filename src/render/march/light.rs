@@ -42,11 +42,13 @@ impl Shadows {
 
     fn fill(&self, volume: &Volume<'_>, triangle: u32) -> Block {
         let prism = volume.shell().prism(triangle);
-        Block::fill(volume.shadow_subdivisions(triangle), volume.layers(), |b, t| {
-            let place = Place { b: [b.y, b.z], t };
-            let origin_m = prism.jacobian(&place).at_m;
-            let start = Start { at_m: 0.0, triangle, place };
-            volume.depth_along(origin_m, self.to_light, start, &TOWARDS_LIGHT, DARK)
+        Block::fill(volume.shadow_subdivisions(triangle), volume.layers(), |b| {
+            move |t| {
+                let place = Place { b: [b.y, b.z], t };
+                let origin_m = prism.jacobian(&place).at_m;
+                let start = Start { at_m: 0.0, triangle, place };
+                volume.depth_along(origin_m, self.to_light, start, &TOWARDS_LIGHT, DARK)
+            }
         })
     }
 }
