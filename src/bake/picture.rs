@@ -7,7 +7,7 @@ use crate::data::mesh::Mesh;
 use crate::error::Result;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::grow;
-use crate::math::Vec3;
+use crate::math::{DVec3, Vec3};
 use crate::preset::Preset;
 use crate::render::pelt::{Hair, Lighting, Pelt};
 use crate::render::picture::{Picture, Settings, draw};
@@ -90,6 +90,11 @@ impl Grown {
             groomed,
             notes,
         })
+    }
+
+    /// Where the origin of the renderer's coordinates lies in the world, m.
+    pub fn origin_m(&self) -> DVec3 {
+        self.groomed.mesh.origin_m
     }
 
     /// What the renderer needs.

@@ -1,9 +1,9 @@
 //! `furrier render`.
 
+use super::bake::UnitName;
 use super::console::Console;
 use super::output;
 use crate::bake::picture::{Grown, Only, Scene, studio};
-use crate::bake::units::Units;
 use crate::data::camera::Camera;
 use crate::error::{Error, Result};
 use crate::math::{DVec3, Vec3};
@@ -14,7 +14,6 @@ use crate::render::picture::{Picture, Settings};
 use crate::render::rays;
 use crate::render::resolve::Blending;
 use crate::shade::environment::Environment;
-use crate::shade::light::Directional;
 use crate::viewer;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -50,7 +49,7 @@ pub struct Render {
     materials: Vec<String>,
     /// What a unit of the file means
     #[arg(long, value_enum, default_value = "auto")]
-    units: Unit,
+    units: UnitName,
     /// Pixels
     #[arg(long, value_name = "WxH", default_value = "1024x1024")]
     size: String,
@@ -93,16 +92,6 @@ pub struct Render {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Unit {
-    /// As large as the preset's animal
-    Auto,
-    M,
-    Cm,
-    Mm,
-    In,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
 enum Quality {
     /// One pass
     Preview,
@@ -134,7 +123,7 @@ impl Render {
                 .with_expected("a name that ends in .png or .exr"));
         }
         output::check(&self.output, &[Path::new(&self.input)])?;
-        let size = viewer::parse_size(&self.size)?.map(|n| n as usize);
+        let size = super::view::size(&self.size)?.map(|n| n as usize);
         let grown = Grown::new(&self.scene()?)?;
         grown.notes.iter().for_each(|note| console.note(note));
         let camera = self.camera(&grown, size)?;
@@ -162,13 +151,7 @@ impl Render {
             input: self.input.clone(),
             preset: Preset::load(&self.preset)?.with_settings(&self.settings)?,
             materials: self.materials.clone(),
-            units: match self.units {
-                Unit::Auto => Units::Auto,
-                Unit::M => Units::Metres,
-                Unit::Cm => Units::Centimetres,
-                Unit::Mm => Units::Millimetres,
-                Unit::In => Units::Inches,
-            },
+            units: self.units.units(),
             seed: self.seed,
             only: match self.only {
                 Hair::Guard => Only::Guard,
@@ -199,8 +182,7 @@ impl Render {
         let mut lighting = studio(camera);
         let mut given = Vec::new();
         for text in &self.lights {
-            let light = viewer::parse_light(text)?;
-            given.push(Directional::travelling(light.direction, light.irradiance)?);
+            given.push(viewer::parse_light(text)?);
         }
         if let Some(file) = &self.env {
             let mut lights = Environment::read(file)?.median_cut(ENVIRONMENT_LIGHTS);

@@ -12,10 +12,10 @@ use crate::shade::{Angles, shadow_power};
 use std::sync::OnceLock;
 
 /// Optical depth beyond which no light is left.
-const DARK: f32 = 8.0;
+const DARK: f32 = 6.0;
 
 /// Steps towards the light may be long: what they miss is blurred by the shadow's own resolution.
-const TOWARDS_LIGHT: Stepping = Stepping { depth: 0.7, layers: 4.0 };
+const TOWARDS_LIGHT: Stepping = Stepping { depth: 1.0, layers: 4.0 };
 
 /// Optical depth of undercoat between each sub-element and the key light, filled prism by prism when first needed.
 #[derive(Debug)]

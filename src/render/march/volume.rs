@@ -32,7 +32,7 @@ impl Default for Resolution {
             layers: 16,
             subelement_px: 1.5,
             most_subdivisions: 7,
-            shadow_coarser: 1,
+            shadow_coarser: 2,
             pattern: Some(Pattern::default()),
         }
     }

@@ -48,6 +48,19 @@ impl Default for Settings {
     }
 }
 
+impl Settings {
+    /// Andersen et al. 2016's four passes, with shorter steps and more virtual fragments.
+    pub fn best(size: [usize; 2]) -> Self {
+        Self {
+            size,
+            passes: 4,
+            blending: Blending::Virtual { fragments: 16 },
+            stepping: Stepping { depth: 0.15, layers: 1.0 },
+            ..Self::default()
+        }
+    }
+}
+
 /// A step's cost: one row of Andersen et al. 2016, Table 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
