@@ -17,6 +17,7 @@ mod docs;
 mod field;
 mod harness;
 mod hostile;
+mod hybrid;
 mod laws;
 mod made;
 mod meshes;

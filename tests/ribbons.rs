@@ -48,13 +48,12 @@ fn a_hair_thinner_than_a_pixel_covers_its_share() {
 #[test]
 fn a_thousand_fragments_at_one_depth_are_ordered_by_id() {
     let mut random = Stream::new(5);
-    let mut fragments: Vec<Fragment> = (0..1000)
-        .map(|id| Fragment { z_m: if id < 500 { 1.0 } else { 2.0 }, id, coverage: 0.002, knot: id, along: 0.5 })
-        .collect();
+    let mut fragments: Vec<Fragment> =
+        (0..1000).map(|id| Fragment::new(if id < 500 { 1.0 } else { 2.0 }, id, 0.002, id, 0.5)).collect();
     let draw = |fragments: &[Fragment]| {
         composite(fragments, &[], Blending::Virtual { fragments: 1 }, None, |f| {
-            let radiance = Vec3::splat(f.id as f32 * 1e-3);
-            (furrier::render::resolve::Face { z_m: f.z_m, radiance, ..Default::default() }, 1.0)
+            let radiance = Vec3::splat(f.id() as f32 * 1e-3);
+            (furrier::render::resolve::Face { z_m: f.z_m(), radiance, ..Default::default() }, 1.0)
         })
     };
     order(&mut fragments);

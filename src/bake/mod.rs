@@ -1,5 +1,6 @@
 //! Floor 7: the pipeline, from an asset to the same asset with a coat.
 
+pub mod picture;
 mod skin;
 pub mod units;
 

@@ -12,6 +12,7 @@ use crate::math::{Vec3, Vec4};
 use crate::preset::{self, Preset};
 
 /// Mesh, fields, and what to tell the user of them.
+#[derive(Debug)]
 pub struct Groomed {
     /// The skin.
     pub mesh: Mesh,

@@ -74,12 +74,25 @@ pub struct Bake {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum UnitName {
+pub(super) enum UnitName {
     Auto,
     M,
     Cm,
     Mm,
     In,
+}
+
+impl UnitName {
+    /// What it stands for.
+    pub(super) fn units(self) -> Units {
+        match self {
+            Self::Auto => Units::Auto,
+            Self::M => Units::Metres,
+            Self::Cm => Units::Centimetres,
+            Self::Mm => Units::Millimetres,
+            Self::In => Units::Inches,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -182,13 +195,7 @@ impl Bake {
             preset,
             presets,
             materials: self.materials.clone(),
-            units: match self.units {
-                UnitName::Auto => Units::Auto,
-                UnitName::M => Units::Metres,
-                UnitName::Cm => Units::Centimetres,
-                UnitName::Mm => Units::Millimetres,
-                UnitName::In => Units::Inches,
-            },
+            units: self.units.units(),
             method: match self.parameterisation {
                 Layout::Lapped => Method::Lapped,
                 Layout::Atlas => Method::Atlas,

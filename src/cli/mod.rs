@@ -9,6 +9,7 @@ mod inspect;
 mod output;
 mod presets;
 mod progress;
+mod render;
 mod view;
 
 use crate::error::{Kind, Result};
@@ -37,6 +38,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Bake(bake::Bake),
+    Render(render::Render),
     View(view::View),
     Inspect(inspect::Inspect),
     Compare(compare::Compare),
@@ -87,6 +89,7 @@ impl Command {
     fn run(self, console: &Console) -> Result<()> {
         match self {
             Self::Bake(command) => command.run(console),
+            Self::Render(command) => command.run(console),
             Self::View(command) => command.run(console),
             Self::Compare(command) => command.run(console),
             Self::Inspect(command) => command.run(console),

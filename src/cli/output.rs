@@ -43,6 +43,14 @@ pub fn png(path: &Path, image: &Image8) -> Result<()> {
     write::whole(path, &bytes, &[])
 }
 
+/// Writes encoded bytes.
+///
+/// # Errors
+/// Where the file cannot be written.
+pub fn bytes(path: &Path, bytes: &[u8]) -> Result<()> {
+    write::whole(path, bytes, &[])
+}
+
 fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> Error {
     Error::new(Kind::Output, "the output cannot be encoded").with_file(path).with_found(error)
 }

@@ -24,6 +24,30 @@ impl Default for Pattern {
     }
 }
 
+/// The crowding of hair over one point of the skin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Column {
+    amplitude: f32,
+    at: Vec3,
+    blur: Vec3,
+    strength: f32,
+    /// The q at which hair would come from beyond the clump's cell.
+    wall: f32,
+}
+
+impl Column {
+    /// Density over its mean at height `t`.
+    pub fn crowding(&self, t: f32) -> f32 {
+        let mut factor = 1.0;
+        if self.amplitude > 0.0 {
+            factor += self.amplitude * simplex(self.at + self.blur * t, 0);
+        }
+        let pull = (self.strength * t * t.sqrt()).min(0.9);
+        let q = 1.0 / (1.0 - pull);
+        if q < self.wall { factor * q * q } else { 0.0 }
+    }
+}
+
 /// A kind of hair as a volume. Heights t are shares of the tallest hair's, in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Undercoat {
@@ -80,36 +104,48 @@ impl Undercoat {
         self.pattern.wavelength * self.clump_spacing_m
     }
 
-    /// Finest detail of [`Self::crowding`], m; infinite where there is none.
+    /// Finest detail of [`Self::column`], m; infinite where there is none.
     pub fn detail_m(&self) -> f32 {
         let pattern = if self.pattern.amplitude > 0.0 { self.wavelength_m() } else { f32::INFINITY };
         let clumps = if self.clump_strength > 0.0 { self.clump_spacing_m } else { f32::INFINITY };
         0.2 * pattern.min(clumps)
     }
 
-    /// Density over its mean at height `t` over the skin's point `root_m` with this normal.
+    /// What crowds the hair over the skin's point `root_m` with this normal, at all heights.
     ///
-    /// Clumps are cones: a hair at distance r from its clump's centre stands at r (1 − pull) at height t, so that what was
-    /// spread over the clump's cell crowds by 1/(1 − pull)² inside, and nothing is left outside.
-    pub fn crowding(&self, root_m: Vec3, normal: Vec3, t: f32, clump_factor: f32) -> f32 {
-        let mut factor = 1.0;
-        if self.pattern.amplitude > 0.0 {
-            let at = root_m / self.wavelength_m();
+    /// Clumps are cones: a hair at distance r from its clump's centre stands at r/q at height t, q = 1/(1 − pull), so that
+    /// what was spread over the clump's cell crowds by q² inside, and nothing is left outside: where the hair that would
+    /// stand here had to come from beyond the cell's wall.
+    pub fn column(&self, root_m: Vec3, normal: Vec3, clump_factor: f32) -> Column {
+        let amplitude = self.pattern.amplitude;
+        let mut column = Column {
+            amplitude,
+            at: Vec3::ZERO,
+            blur: Vec3::ZERO,
+            strength: self.clump_strength * clump_factor,
+            wall: f32::INFINITY,
+        };
+        if amplitude > 0.0 {
+            column.at = root_m / self.wavelength_m();
             // A fine noise moves the coarse one about, more towards the tips.
-            let blur = self.pattern.jitter * t;
-            let moved = at + blur * Vec3::new(simplex(at * 4.0, 1), simplex(at * 4.0, 2), simplex(at * 4.0, 3));
-            factor += self.pattern.amplitude * simplex(if blur > 0.0 { moved } else { at }, 0);
+            let (a, b) = (simplex(column.at * 4.0, 1), simplex(column.at * 4.0, 2));
+            column.blur = self.pattern.jitter * Vec3::new(a, b, -a);
         }
-        let pull = (self.clump_strength * clump_factor * t * t.sqrt()).min(0.9);
-        if pull > 1e-3 {
-            let flat = |v: Vec3| v - normal * v.dot(normal);
-            let centre = root_m + flat(clump::to_centre_in_space(root_m, self.clump_spacing_m, 0));
-            let from = centre + (root_m - centre) / (1.0 - pull);
-            let own = from + flat(clump::to_centre_in_space(from, self.clump_spacing_m, 0));
-            let same = own.distance_squared(centre) < 1e-4 * self.clump_spacing_m * self.clump_spacing_m;
-            factor *= if same { 1.0 / ((1.0 - pull) * (1.0 - pull)) } else { 0.0 };
+        if column.strength > 1e-3 {
+            let centres = clump::to_centres_in_space(root_m, self.clump_spacing_m, 0);
+            let nearer = |a: Vec3, b: Vec3| if b.length_squared() < a.length_squared() { b } else { a };
+            let own = centres.into_iter().fold(Vec3::INFINITY, nearer);
+            let away = normal * own.dot(normal) - own;
+            for other in centres {
+                // A point at root + (q − 1)·away is as near to both centres where it passes the plane between them.
+                let across = away.dot(other - own);
+                if across > 0.0 {
+                    let left = 0.5 * (other.length_squared() - own.length_squared());
+                    column.wall = column.wall.min(1.0 + left / across);
+                }
+            }
         }
-        factor
+        column
     }
 
     /// Mean |sin∠(ω, t)| over the hairs' slopes, where the mean hair's is `sine`.

@@ -5,6 +5,7 @@ pub mod bvh;
 pub mod cast;
 pub mod cone;
 pub mod develop;
+pub mod exr;
 pub mod flat;
 pub mod march;
 pub mod pelt;

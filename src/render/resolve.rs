@@ -123,14 +123,32 @@ impl Front {
 
 /// Orders a pixel's fragments by (depth, id) and joins neighbouring pieces of one hair: together they cover it once.
 pub fn order(fragments: &mut Vec<Fragment>) {
-    fragments.sort_unstable_by(|a, b| a.z_m.total_cmp(&b.z_m).then(a.id.cmp(&b.id)).then(a.knot.cmp(&b.knot)));
+    fragments.sort_unstable_by_key(Fragment::order);
     fragments.dedup_by(|next, kept| {
-        let same = next.id == kept.id;
+        let same = next.id() == kept.id();
         if same {
             kept.coverage = (kept.coverage + next.coverage).min(1.0);
         }
         same
     });
+}
+
+/// Orders a pixel's fragments and leaves out those that lie behind an opaque front; returns the depth from which on
+/// everything does, infinite where there is none. What is left out could not be seen whatever else comes in front.
+pub fn trim(fragments: &mut Vec<Fragment>, opacity: impl Fn(&Fragment) -> f32) -> f32 {
+    fragments.sort_unstable_by_key(Fragment::order);
+    let mut through = 1.0;
+    let seen = fragments.iter().position(|fragment| {
+        through *= 1.0 - fragment.coverage * opacity(fragment);
+        through < 0.1 * OPAQUE
+    });
+    match seen {
+        Some(last) => {
+            fragments.truncate(last + 1);
+            fragments[last].z_m()
+        }
+        None => f32::INFINITY,
+    }
 }
 
 /// Composites front to back. `fragments` are ordered by [`order`], `stretches` by where they begin; `face` says what a
@@ -152,15 +170,15 @@ pub fn composite(
         if front.through < OPAQUE {
             break;
         }
-        while next < fragments.len() && fragments[next].z_m <= stretch.from_m && front.through >= OPAQUE {
+        while next < fragments.len() && fragments[next].z_m() <= stretch.from_m && front.through >= OPAQUE {
             hair(&mut front, &fragments[next]);
             next += 1;
         }
         match blending {
             Blending::Virtual { .. } => {
                 let mut from_m = stretch.from_m;
-                while next < fragments.len() && fragments[next].z_m < stretch.to_m && front.through >= OPAQUE {
-                    let to_m = fragments[next].z_m.max(from_m);
+                while next < fragments.len() && fragments[next].z_m() < stretch.to_m && front.through >= OPAQUE {
+                    let to_m = fragments[next].z_m().max(from_m);
                     front.add_part(stretch, from_m, to_m);
                     hair(&mut front, &fragments[next]);
                     from_m = to_m;
@@ -179,7 +197,7 @@ pub fn composite(
                     }
                     // Weighted by the fragment's own opacity, so that a hair's thinner share of a pixel takes less.
                     let own = fragment.coverage * face(fragment).1 * unoccluded;
-                    alpha -= own * exp_negative(-attenuation_per_m * (fragment.z_m - stretch.from_m));
+                    alpha -= own * exp_negative(-attenuation_per_m * (fragment.z_m() - stretch.from_m));
                     unoccluded -= own;
                 }
                 let look = Face {

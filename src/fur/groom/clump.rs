@@ -24,16 +24,17 @@ pub fn to_centre_on_tile(root_m: Vec2, edge_m: f32, spacing_m: f32, seed: u64) -
 
 /// From `root_m` in space to the nearest clump centre, m. The grid is in space, so a surface needs no coordinates.
 pub fn to_centre_in_space(root_m: Vec3, spacing_m: f32, seed: u64) -> Vec3 {
+    let nearer = |a: Vec3, b: Vec3| if b.length_squared() < a.length_squared() { b } else { a };
+    to_centres_in_space(root_m, spacing_m, seed).into_iter().fold(Vec3::INFINITY, nearer)
+}
+
+/// From `root_m` to the clump centres of its cell and the cells around it, m.
+pub fn to_centres_in_space(root_m: Vec3, spacing_m: f32, seed: u64) -> [Vec3; 27] {
     let home = (root_m / spacing_m).floor();
-    let mut nearest = Vec3::splat(f32::INFINITY);
-    for i in 0..27 {
-        let cell = home + Vec3::new((i % 3 - 1) as f32, (i / 3 % 3 - 1) as f32, (i / 9 - 1) as f32);
+    std::array::from_fn(|i| {
+        let cell = home + Vec3::new((i % 3) as f32 - 1.0, (i / 3 % 3) as f32 - 1.0, (i / 9) as f32 - 1.0);
         let key = cell.to_array().iter().fold(seed, |key, &c| combine(key, c as i64 as u64));
         let offset = Vec3::new(unit_f32(key), unit_f32(combine(key, 1)), unit_f32(combine(key, 2)));
-        let to = (cell + offset) * spacing_m - root_m;
-        if to.length_squared() < nearest.length_squared() {
-            nearest = to;
-        }
-    }
-    nearest
+        (cell + offset) * spacing_m - root_m
+    })
 }

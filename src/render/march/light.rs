@@ -12,10 +12,10 @@ use crate::shade::{Angles, shadow_power};
 use std::sync::OnceLock;
 
 /// Optical depth beyond which no light is left.
-const DARK: f32 = 8.0;
+const DARK: f32 = 6.0;
 
 /// Steps towards the light may be long: what they miss is blurred by the shadow's own resolution.
-const TOWARDS_LIGHT: Stepping = Stepping { depth: 0.7, layers: 4.0 };
+const TOWARDS_LIGHT: Stepping = Stepping { depth: 1.0, layers: 4.0 };
 
 /// Optical depth of undercoat between each sub-element and the key light, filled prism by prism when first needed.
 #[derive(Debug)]
@@ -42,11 +42,13 @@ impl Shadows {
 
     fn fill(&self, volume: &Volume<'_>, triangle: u32) -> Block {
         let prism = volume.shell().prism(triangle);
-        Block::fill(volume.shadow_subdivisions(triangle), volume.layers(), |b, t| {
-            let place = Place { b: [b.y, b.z], t };
-            let origin_m = prism.jacobian(&place).at_m;
-            let start = Start { at_m: 0.0, triangle, place };
-            volume.depth_along(origin_m, self.to_light, start, &TOWARDS_LIGHT, DARK)
+        Block::fill(volume.shadow_subdivisions(triangle), volume.layers(), |b| {
+            move |t| {
+                let place = Place { b: [b.y, b.z], t };
+                let origin_m = prism.jacobian(&place).at_m;
+                let start = Start { at_m: 0.0, triangle, place };
+                volume.depth_along(origin_m, self.to_light, start, &TOWARDS_LIGHT, DARK)
+            }
         })
     }
 }

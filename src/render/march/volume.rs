@@ -136,10 +136,11 @@ impl<'a> Volume<'a> {
         let prism = self.shell.prism(triangle);
         let d = u32::from(self.subdivisions[triangle as usize]);
         let clump = &self.shell.fields.clump;
-        Block::fill(d, self.resolution.layers, |b, t| {
+        Block::fill(d, self.resolution.layers, |b| {
             let root_m = prism.foot_m[0] * b.x + prism.foot_m[1] * b.y + prism.foot_m[2] * b.z;
             let factor = self.shell.scalar(clump, triangle, b);
-            self.shell.undercoat.crowding(root_m, self.normal(triangle, b), t, factor)
+            let column = self.shell.undercoat.column(root_m, self.normal(triangle, b), factor);
+            move |t| column.crowding(t)
         })
     }
 

@@ -15,13 +15,15 @@ pub struct Block {
 }
 
 impl Block {
-    /// Fills a block; `value(barycentric, t)` is asked at the centre of every sub-element.
-    pub fn fill(d: u32, layers: u32, mut value: impl FnMut(Vec3, f32) -> f32) -> Self {
-        let per_layer = 1_u32 << (2 * d);
-        let mut values = Vec::with_capacity((per_layer * layers) as usize);
-        for layer in 0..layers {
-            let t = (layer as f32 + 0.5) / layers as f32;
-            values.extend((0..per_layer).map(|i| code(value(subelement::centre(i, d), t))));
+    /// Fills a block; `column(barycentric)` is asked for every sub-element of a layer, and what it gives for every height.
+    pub fn fill<F: FnMut(f32) -> f32>(d: u32, layers: u32, mut column: impl FnMut(Vec3) -> F) -> Self {
+        let per_layer = 1_usize << (2 * d);
+        let mut values = vec![0; per_layer * layers as usize];
+        for i in 0..per_layer {
+            let mut value = column(subelement::centre(i as u32, d));
+            for layer in 0..layers as usize {
+                values[layer * per_layer + i] = code(value((layer as f32 + 0.5) / layers as f32));
+            }
         }
         Self { d, layers, values: values.into() }
     }

@@ -35,14 +35,34 @@ pub struct Knot {
 /// A share of a pixel that a hair covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fragment {
-    /// Depth along the optical axis, m.
-    pub z_m: f32,
-    /// Source index of the hair.
-    pub id: u32,
+    /// Depth's bits, then the hair's id: positive floats are ordered as their bits.
+    order: u64,
     /// Covered share of the pixel, in (0, 1].
     pub coverage: f32,
     /// First knot of the piece.
     pub knot: u32,
     /// Where along the piece, in [0, 1].
     pub along: f32,
+}
+
+impl Fragment {
+    /// Of hair `id` at depth `z_m` > 0 along the optical axis.
+    pub fn new(z_m: f32, id: u32, coverage: f32, knot: u32, along: f32) -> Self {
+        Self { order: u64::from(z_m.to_bits()) << 32 | u64::from(id), coverage, knot, along }
+    }
+
+    /// Depth along the optical axis, m.
+    pub fn z_m(&self) -> f32 {
+        f32::from_bits((self.order >> 32) as u32)
+    }
+
+    /// Source index of the hair.
+    pub fn id(&self) -> u32 {
+        self.order as u32
+    }
+
+    /// Sorts by depth, then id, then piece.
+    pub fn order(&self) -> (u64, u32) {
+        (self.order, self.knot)
+    }
 }

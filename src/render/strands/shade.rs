@@ -3,6 +3,7 @@
 use super::Look;
 use crate::data::strands::Strands;
 use crate::math::Vec3;
+use crate::math::fast::exp_negative;
 use crate::render::pelt::{Layer, Lighting, Pelt, sky_depth, slant_depth, terminator};
 use crate::shade::lobes::Lobes;
 use crate::shade::{Angles, shadow_power};
@@ -67,7 +68,7 @@ impl<'a> GuardShader<'a> {
 
     fn radiance(&self, albedo: Vec3, along: Vec3, to_eye: Vec3, normal: Vec3, lean: Vec3, above: f32) -> Vec3 {
         let power = (albedo * self.albedo_share).map(shadow_power);
-        let through = |depth: f32| (power * -depth).map(libm::expf);
+        let through = |depth: f32| (power * -depth).map(exp_negative);
         let mut sum = self.lighting.ambient * albedo * self.albedo_share * through(sky_depth(above));
         for light in std::iter::once(&self.lighting.key).chain(&self.lighting.fill) {
             let open = terminator(light.to_light, normal);

@@ -1,0 +1,171 @@
+//! A picture of an asset's fur by the hybrid renderer, without baking it.
+
+use super::skin::{self, Groomed};
+use super::units::{self, Units};
+use crate::asset;
+use crate::data::mesh::Mesh;
+use crate::error::Result;
+use crate::fur::groom::fibre::Fibre;
+use crate::fur::grow;
+use crate::math::{DVec3, Vec3};
+use crate::preset::Preset;
+use crate::render::pelt::{Hair, Lighting, Pelt};
+use crate::render::picture::{Picture, Settings, draw};
+use crate::render::rays::Camera;
+use std::f32::consts::PI;
+
+/// Which hair is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Only {
+    /// Guard hair as strands and undercoat as a volume.
+    Hybrid,
+    /// Guard hair.
+    Guard,
+    /// Undercoat.
+    Undercoat,
+}
+
+/// What to depict.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// A file, or `sample:NAME`.
+    pub input: String,
+    /// Preset of all furred materials.
+    pub preset: Preset,
+    /// Materials to fur; empty for all that are not by name bare.
+    pub materials: Vec<String>,
+    /// What a unit of the file means.
+    pub units: Units,
+    /// Decides all that is random.
+    pub seed: u64,
+    /// Which hair is drawn.
+    pub only: Only,
+}
+
+/// Skin and hair, grown and ready to be drawn.
+#[derive(Debug)]
+pub struct Grown {
+    groomed: Groomed,
+    guard: (crate::data::strands::Strands, Fibre),
+    undercoat: Fibre,
+    skin_factor: Vec3,
+    only: Only,
+    /// What a person should know, one sentence each.
+    pub notes: Vec<String>,
+}
+
+impl Grown {
+    /// Reads, grooms and grows a scene. All parts become one skin; those without fur are bare.
+    ///
+    /// # Errors
+    /// When the input cannot be used or names something that is not there.
+    pub fn new(scene: &Scene) -> Result<Self> {
+        let asset = asset::load(&scene.input)?;
+        let chosen = asset::select(&asset.parts, &scene.materials)?;
+        let preset = &scene.preset;
+        let scale = units::scale(scene.units, preset, &asset, scene.input.starts_with("sample:"))?;
+        let mut notes = asset.warnings.clone();
+        notes.extend(scale.note);
+        let mut all: Option<Groomed> = None;
+        for (index, part) in asset.parts.iter().enumerate() {
+            let mut groomed = skin::groom(&asset, part, preset, scale.metres_per_unit)?;
+            if !chosen.contains(&index) {
+                groomed.fields.density.fill(0.0);
+            }
+            notes.append(&mut groomed.notes);
+            match &mut all {
+                None => all = Some(groomed),
+                Some(all) => join(all, groomed),
+            }
+        }
+        let groomed = all.unwrap_or_else(|| unreachable!("an asset without parts is refused when it is read"));
+        let diagonal_m = scale.diagonal_m as f32;
+        let fibre = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
+        let strands = grow::skin::grow(&fibre, &groomed.mesh, &groomed.fields, scene.seed);
+        Ok(Self {
+            guard: (strands, fibre),
+            undercoat: Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m),
+            skin_factor: Vec3::from(preset.colour.skin),
+            only: scene.only,
+            groomed,
+            notes,
+        })
+    }
+
+    /// Where the origin of the renderer's coordinates lies in the world, m.
+    pub fn origin_m(&self) -> DVec3 {
+        self.groomed.mesh.origin_m
+    }
+
+    /// What the renderer needs.
+    pub fn pelt(&self) -> Pelt<'_> {
+        Pelt {
+            skin: &self.groomed.mesh,
+            fields: &self.groomed.fields,
+            skin_factor: self.skin_factor,
+            guard: (self.only != Only::Undercoat).then_some((&self.guard.0, &self.guard.1)),
+            undercoat: (self.only != Only::Guard).then_some(&self.undercoat),
+            hair: Hair::default(),
+        }
+    }
+
+    /// Renders a picture.
+    ///
+    /// # Errors
+    /// As [`draw`].
+    pub fn draw(&self, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Picture> {
+        draw(&self.pelt(), lighting, camera, settings)
+    }
+
+    /// A camera at an azimuth and elevation that frames skin and hair; `distance` 1 fills the picture's height or width.
+    pub fn camera(&self, azimuth_deg: f32, elevation_deg: f32, distance: f32, size: [usize; 2]) -> Camera {
+        let mesh = &self.groomed.mesh;
+        let (low, high) = mesh.bounds_m();
+        let hair_m = self.guard.1.longest_m().max(self.undercoat.longest_m());
+        let vfov_rad = 0.6_f32;
+        let (azimuth, elevation) = (azimuth_deg.to_radians(), elevation_deg.clamp(-89.0, 89.0).to_radians());
+        let (sin, cos) = libm::sincosf(elevation);
+        let towards = Vec3::new(libm::sinf(azimuth) * cos, sin, libm::cosf(azimuth) * cos);
+        let target_m = 0.5 * (low + high);
+        // How far each vertex asks the eye to stand back, across and up the picture.
+        let forward = -towards;
+        let right = forward.cross(Vec3::Y).normalize_or(Vec3::X);
+        let up = right.cross(forward);
+        let half = libm::tanf(0.5 * vfov_rad);
+        let aspect = size[0] as f32 / size[1] as f32;
+        let back_m = mesh.positions_m.iter().fold(0.0_f32, |back, &p| {
+            let q = p - target_m;
+            let reach = ((q.dot(up).abs() + hair_m) / half).max((q.dot(right).abs() + hair_m) / (half * aspect));
+            back.max(reach - q.dot(forward))
+        });
+        Camera { eye_m: target_m + towards * (back_m * distance), target_m, up: Vec3::Y, vfov_rad }
+    }
+}
+
+/// A key light over the left shoulder of a camera, and a tenth of its light from everywhere.
+pub fn studio(camera: &Camera) -> Lighting {
+    let forward = (camera.target_m - camera.eye_m).normalize_or(Vec3::NEG_Z);
+    let right = forward.cross(camera.up).normalize_or(Vec3::X);
+    let up = right.cross(forward);
+    let to_light = (up * 0.8 - forward * 0.7 - right * 0.9).normalize();
+    let key = crate::shade::light::Directional { to_light, irradiance: Vec3::splat(2.2 * PI) };
+    Lighting { key, fill: Vec::new(), ambient: Vec3::splat(0.6), fill_on_undercoat: false }
+}
+
+/// Adds a part's skin and fields to those before it.
+fn join(all: &mut Groomed, next: Groomed) {
+    let (mesh, other): (&mut Mesh, Mesh) = (&mut all.mesh, next.mesh);
+    let first = mesh.positions_m.len() as u32;
+    let shift = (other.origin_m - mesh.origin_m).as_vec3();
+    mesh.positions_m.extend(other.positions_m.iter().map(|&p| p + shift));
+    mesh.normals.extend(other.normals);
+    mesh.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + first)));
+    mesh.position_class.extend(other.position_class.iter().map(|c| c + first));
+    let (fields, other) = (&mut all.fields, next.fields);
+    fields.length.extend(other.length);
+    fields.density.extend(other.density);
+    fields.direction.extend(other.direction);
+    fields.lean.extend(other.lean);
+    fields.clump.extend(other.clump);
+    fields.tint.extend(other.tint);
+}

@@ -1,0 +1,236 @@
+//! `furrier render`.
+
+use super::bake::UnitName;
+use super::console::Console;
+use super::output;
+use crate::bake::picture::{Grown, Only, Scene, studio};
+use crate::data::camera::Camera;
+use crate::error::{Error, Result};
+use crate::math::{DVec3, Vec3};
+use crate::preset::Preset;
+use crate::render::develop::{Development, develop};
+use crate::render::pelt::Lighting;
+use crate::render::picture::{Picture, Settings};
+use crate::render::rays;
+use crate::render::resolve::Blending;
+use crate::shade::environment::Environment;
+use crate::viewer;
+use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// Lights that stand for an environment map (Andersen et al. 2016 §5).
+const ENVIRONMENT_LIGHTS: usize = 16;
+
+/// Draw fur hair by hair, over an undercoat followed as a volume
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  furrier render sample:hat -o hat.png --preset mink
+  furrier render bunny.glb -o bunny.exr --preset rabbit --quality final --size 1920x1137
+  furrier render bunny.glb -o lit.png --env studio.hdr --light dir:-1,-2,-1:5,5,5 --orbit 60,20,1
+  furrier render bunny.glb -o guard.png --only guard --report guard.json
+
+An .exr holds every layer: radiance, alpha, distance, normal, tangent, albedo, and the parts of guard hair and undercoat.")]
+pub struct Render {
+    /// A glTF or OBJ file, or sample:NAME
+    input: String,
+    /// The picture to write: .png or .exr
+    #[arg(short, long, value_name = "OUT.png|exr")]
+    output: PathBuf,
+    /// A built-in preset or a TOML file
+    #[arg(long, value_name = "NAME|FILE", default_value = "fox")]
+    preset: String,
+    /// Change a value of the preset; repeatable
+    #[arg(long = "set", value_name = "table.key=value")]
+    settings: Vec<String>,
+    /// Fur this material alone; repeatable
+    #[arg(long = "material", value_name = "NAME")]
+    materials: Vec<String>,
+    /// What a unit of the file means
+    #[arg(long, value_enum, default_value = "auto")]
+    units: UnitName,
+    /// Pixels
+    #[arg(long, value_name = "WxH", default_value = "1024x1024")]
+    size: String,
+    /// Degrees around and above, and a factor on the distance at which the asset just fits
+    #[arg(long, value_name = "AZ,EL,DIST", allow_hyphen_values = true, default_value = "35,20,1")]
+    orbit: String,
+    /// A camera file
+    #[arg(long, value_name = "FILE.json")]
+    camera: Option<PathBuf>,
+    /// An environment map whose light falls on the guard hair
+    #[arg(long, value_name = "FILE.hdr|exr")]
+    env: Option<PathBuf>,
+    /// Let the environment's light fall on the undercoat too
+    #[arg(long, requires = "env")]
+    env_on_undercoat: bool,
+    /// The key light: the direction it travels, its irradiance in linear RGB; further ones are shadowed less exactly
+    #[arg(long = "light", value_name = "dir:X,Y,Z:R,G,B")]
+    lights: Vec<String>,
+    /// Light from everywhere, radiance in linear RGB
+    #[arg(long, value_name = "R,G,B")]
+    ambient: Option<String>,
+    /// How much work to spend
+    #[arg(long, value_enum, default_value = "preview")]
+    quality: Quality,
+    /// Which hair to draw
+    #[arg(long, value_enum, default_value = "hybrid")]
+    only: Hair,
+    /// Blend undercoat as one fragment per ray, faded by hair behind it, with this attenuation in 1/m
+    #[arg(long, value_name = "PER_M")]
+    simplified: Option<f32>,
+    /// Stops of exposure, for a .png
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_hyphen_values = true)]
+    exposure: f32,
+    /// Decides all that is random
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Write times, memory and counts to this JSON file
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Quality {
+    /// One pass
+    Preview,
+    /// Four passes, shorter steps
+    Final,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Hair {
+    /// Guard hair
+    Guard,
+    /// Undercoat
+    Undercoat,
+    /// Both
+    Hybrid,
+}
+
+impl Render {
+    /// Draws and writes.
+    ///
+    /// # Errors
+    /// Where the input, an option or a parameter cannot be used, or a file not written.
+    pub fn run(self, console: &Console) -> Result<()> {
+        let kind = self.output.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        if kind != "png" && kind != "exr" {
+            return Err(Error::usage("the picture's kind is unknown")
+                .with_field("--output")
+                .with_found(self.output.display())
+                .with_expected("a name that ends in .png or .exr"));
+        }
+        output::check(&self.output, &[Path::new(&self.input)])?;
+        let size = super::view::size(&self.size)?.map(|n| n as usize);
+        let grown = Grown::new(&self.scene()?)?;
+        grown.notes.iter().for_each(|note| console.note(note));
+        let camera = self.camera(&grown, size)?;
+        let lighting = self.lighting(&camera)?;
+        let picture = grown.draw(&lighting, &camera, &self.settings_of(size))?;
+        if kind == "exr" {
+            output::bytes(&self.output, &crate::render::exr::encode(&picture.film)?)?;
+        } else {
+            let development = Development { exposure_ev: self.exposure, ..Development::default() };
+            output::png(&self.output, &develop(&picture.film, &development))?;
+        }
+        let report = report(&picture);
+        if let Some(file) = &self.report {
+            output::json(file, &report)?;
+        }
+        console.result(&report, |out| {
+            let ms = report["total_ms"].as_f64().unwrap_or(0.0);
+            let [width, height] = size;
+            writeln!(out, "{}: {width} × {height}, drawn in {:.1} s", self.output.display(), ms * 1e-3)
+        })
+    }
+
+    fn scene(&self) -> Result<Scene> {
+        Ok(Scene {
+            input: self.input.clone(),
+            preset: Preset::load(&self.preset)?.with_settings(&self.settings)?,
+            materials: self.materials.clone(),
+            units: self.units.units(),
+            seed: self.seed,
+            only: match self.only {
+                Hair::Guard => Only::Guard,
+                Hair::Undercoat => Only::Undercoat,
+                Hair::Hybrid => Only::Hybrid,
+            },
+        })
+    }
+
+    fn camera(&self, grown: &Grown, size: [usize; 2]) -> Result<rays::Camera> {
+        if let Some(file) = &self.camera {
+            let text = std::fs::read_to_string(file)
+                .map_err(|e| Error::input("the camera file cannot be read").with_file(file).with_found(e))?;
+            let camera = Camera::from_json(&text).map_err(|e| e.with_file(file))?;
+            let local = |p: [f64; 3]| (DVec3::from(p) - grown.origin_m()).as_vec3();
+            return Ok(rays::Camera {
+                eye_m: local(camera.eye),
+                target_m: local(camera.target),
+                up: DVec3::from(camera.up).as_vec3(),
+                vfov_rad: camera.vfov_deg.to_radians() as f32,
+            });
+        }
+        let [azimuth, elevation, distance] = viewer::parse_triple(&self.orbit, "--orbit")?.to_array();
+        Ok(grown.camera(azimuth, elevation, distance, size))
+    }
+
+    fn lighting(&self, camera: &rays::Camera) -> Result<Lighting> {
+        let mut lighting = studio(camera);
+        let mut given = Vec::new();
+        for text in &self.lights {
+            given.push(viewer::parse_light(text)?);
+        }
+        if let Some(file) = &self.env {
+            let mut lights = Environment::read(file)?.median_cut(ENVIRONMENT_LIGHTS);
+            // Without a light of its own, the picture's key is the map's strongest.
+            lights.sort_by(|a, b| b.irradiance.element_sum().total_cmp(&a.irradiance.element_sum()));
+            given.extend(lights);
+            lighting.ambient = Vec3::ZERO;
+            lighting.fill_on_undercoat = self.env_on_undercoat;
+        }
+        if !given.is_empty() {
+            lighting.key = given.remove(0);
+            lighting.fill = given;
+        }
+        if let Some(ambient) = &self.ambient {
+            lighting.ambient = viewer::parse_triple(ambient, "--ambient")?;
+        }
+        Ok(lighting)
+    }
+
+    fn settings_of(&self, size: [usize; 2]) -> Settings {
+        let mut settings = match self.quality {
+            Quality::Preview => Settings { size, ..Settings::default() },
+            Quality::Final => Settings::best(size),
+        };
+        if let Some(attenuation_per_m) = self.simplified {
+            settings.blending = Blending::Simplified { attenuation_per_m };
+        }
+        settings
+    }
+}
+
+/// The rows of Andersen et al. 2016, Table 1.
+fn report(picture: &Picture) -> Value {
+    let rows: Vec<Value> =
+        picture.rows.iter().map(|row| json!({ "name": row.name, "ms": row.ms, "bytes": row.bytes })).collect();
+    let counts = &picture.counts;
+    json!({
+        "schema_version": 1,
+        "steps": rows,
+        "total_ms": picture.rows.iter().map(|row| row.ms).sum::<f64>(),
+        "device": "cpu",
+        "counts": {
+            "strands": counts.strands,
+            "pieces": counts.pieces,
+            "fragments": counts.fragments,
+            "steps": counts.steps,
+            "subelements": counts.subelements,
+        },
+        "coverage": picture.film.coverage(),
+    })
+}

@@ -1,0 +1,156 @@
+//! A picture of a pelt through a camera: bands of rows, and tiles within them (`docs/steps/strands.md`).
+
+mod film;
+mod pass;
+mod tile;
+
+use super::march::Stepping;
+use super::march::volume::{Resolution, Volume};
+use super::pelt::{Lighting, Pelt};
+use super::rays::Camera;
+use super::resolve::Blending;
+use super::view::View;
+use crate::data::film::Film;
+use crate::error::Result;
+use crate::fur::undercoat::Undercoat;
+use crate::math::{Vec2, sampling};
+use film::{add, finish};
+use pass::Pass;
+use std::time::Instant;
+
+/// How a picture is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Pixels per row and rows.
+    pub size: [usize; 2],
+    /// Passes at different places within the pixels, averaged; at least 1. Andersen et al. 2016 use 4.
+    pub passes: usize,
+    /// How guard hair and undercoat are ordered.
+    pub blending: Blending,
+    /// How finely rays are followed through undercoat.
+    pub stepping: Stepping,
+    /// How finely undercoat is stored.
+    pub resolution: Resolution,
+    /// Memory for the strands of a band of rows, bytes: smaller budgets give more bands and the same picture.
+    pub band_bytes: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            size: [512, 512],
+            passes: 1,
+            blending: Blending::Virtual { fragments: 8 },
+            stepping: Stepping::default(),
+            resolution: Resolution::default(),
+            band_bytes: 256 << 20,
+        }
+    }
+}
+
+impl Settings {
+    /// Andersen et al. 2016's four passes, with shorter steps and more virtual fragments.
+    pub fn best(size: [usize; 2]) -> Self {
+        Self {
+            size,
+            passes: 4,
+            blending: Blending::Virtual { fragments: 16 },
+            stepping: Stepping { depth: 0.15, layers: 1.0 },
+            ..Self::default()
+        }
+    }
+}
+
+/// A step's cost: one row of Andersen et al. 2016, Table 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The step.
+    pub name: &'static str,
+    /// Time, ms. Steps that run tile by tile are given by their share of the threads' time.
+    pub ms: f64,
+    /// Memory held at most, bytes.
+    pub bytes: usize,
+}
+
+/// A picture and what it took.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// The film.
+    pub film: Film,
+    /// Time and memory per step.
+    pub rows: Vec<Row>,
+    /// Strands drawn, pieces and fragments of them, summed over passes and bands.
+    pub counts: Counts,
+}
+
+/// How much was drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Strands that were not hidden.
+    pub strands: u64,
+    /// Their pieces.
+    pub pieces: u64,
+    /// Fragments of guard hair composited.
+    pub fragments: u64,
+    /// Steps through undercoat.
+    pub steps: u64,
+    /// Sub-elements filled.
+    pub subelements: u64,
+}
+
+/// Renders a picture.
+///
+/// # Errors
+/// Names what keeps the camera from looking anywhere, or a scattering parameter out of range.
+pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Picture> {
+    let mut picture = Picture { film: Film::default(), rows: Vec::new(), counts: Counts::default() };
+    let passes = settings.passes.max(1);
+    let normals = pelt.skin.smooth_normals();
+    let start = Instant::now();
+    let middle = View::new(camera, settings.size, Vec2::ZERO)?;
+    let subdivisions = subdivisions(pelt, &middle, &settings.resolution);
+    let volume = Volume::new(pelt, &normals, lighting.key.to_light, settings.resolution, subdivisions);
+    row(&mut picture, "shell", start, volume.as_ref().map_or(0, |v| v.shell().bytes()));
+    for pass in 0..passes {
+        let shift = if passes == 1 { Vec2::ZERO } else { sampling::r2(pass as u64, 1 << 63) - 0.5 };
+        let view = View::new(camera, settings.size, shift)?;
+        let film = Pass::new(pelt, lighting, &normals, volume.as_ref(), view, settings)?.run(&mut picture);
+        if pass == 0 { picture.film = film } else { add(&mut picture.film, &film) }
+    }
+    finish(&mut picture.film, 1.0 / passes as f32);
+    if let Some(volume) = &volume {
+        let [density, shadow] = volume.bytes();
+        picture.rows.push(Row { name: "densities", ms: 0.0, bytes: density });
+        picture.rows.push(Row { name: "shadows", ms: 0.0, bytes: shadow });
+        picture.counts.subelements = density as u64;
+    }
+    Ok(picture)
+}
+
+/// Subdivisions d per triangle: sub-elements about as large as asked for on the picture, but no finer than what there is
+/// to see.
+fn subdivisions(pelt: &Pelt<'_>, view: &View, resolution: &Resolution) -> Vec<u8> {
+    let Some(fibre) = pelt.undercoat else { return Vec::new() };
+    let detail_m = Undercoat::new(fibre, resolution.pattern).detail_m();
+    (0..pelt.skin.triangles.len())
+        .map(|t| {
+            let corners = pelt.skin.corners_m(t);
+            let edge_m = (0..3).map(|i| corners[i].distance(corners[(i + 1) % 3])).sum::<f32>() / 3.0;
+            let nearest_m = corners.map(|p| view.camera_from_world(p).z).into_iter().fold(f32::INFINITY, f32::min);
+            let wanted_m = resolution.subelement_px * nearest_m.max(view.near_m) / view.focal_px;
+            let splits = edge_m / wanted_m.max(detail_m);
+            libm::roundf(libm::log2f(splits.max(1.0))).clamp(0.0, resolution.most_subdivisions.min(10) as f32) as u8
+        })
+        .collect()
+}
+
+fn row(picture: &mut Picture, name: &'static str, start: Instant, bytes: usize) {
+    let ms = start.elapsed().as_secs_f64() * 1e3;
+    match picture.rows.iter_mut().find(|row| row.name == name) {
+        Some(row) => {
+            row.ms += ms;
+            row.bytes = row.bytes.max(bytes);
+        }
+        None => picture.rows.push(Row { name, ms, bytes }),
+    }
+}

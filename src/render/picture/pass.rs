@@ -1,0 +1,231 @@
+//! One pass over the picture: skin, then strands, band by band.
+
+use super::film::film_rows;
+use super::tile::Scratch;
+use super::{Picture, Settings, row};
+use crate::data::film::Film;
+use crate::data::strands::Strands;
+use crate::error::Result;
+use crate::math::Vec3;
+use crate::render::bins::{Bins, Grid, Reach, TILE};
+use crate::render::flat;
+use crate::render::march::enter::Entrances;
+use crate::render::march::light::UndercoatShader;
+use crate::render::march::volume::Volume;
+use crate::render::pelt::{Lighting, Pelt};
+use crate::render::skin::SkinTile;
+use crate::render::strands::shade::GuardShader;
+use crate::render::strands::{Knot, Look, project};
+use crate::render::view::View;
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// What a pass draws, and through which view.
+pub(super) struct Pass<'a> {
+    pub(super) pelt: &'a Pelt<'a>,
+    pub(super) lighting: &'a Lighting,
+    pub(super) normals: &'a [Vec3],
+    pub(super) view: View,
+    pub(super) settings: &'a Settings,
+    /// The skin's vertices in camera axes.
+    pub(super) skin_camera_m: Vec<Vec3>,
+    pub(super) guard: Option<(&'a Strands, GuardShader<'a>)>,
+    pub(super) undercoat: Option<(&'a Volume<'a>, UndercoatShader<'a>)>,
+}
+
+/// The strands of a band, ready to be drawn.
+#[derive(Default)]
+pub(super) struct Band {
+    pub(super) strands: Vec<u32>,
+    pub(super) knots: Vec<Knot>,
+    pub(super) looks: Vec<Look>,
+    pub(super) bins: Bins,
+}
+
+impl<'a> Pass<'a> {
+    pub(super) fn new(
+        pelt: &'a Pelt<'a>,
+        lighting: &'a Lighting,
+        normals: &'a [Vec3],
+        volume: Option<&'a Volume<'a>>,
+        view: View,
+        settings: &'a Settings,
+    ) -> Result<Self> {
+        let guard = match pelt.guard {
+            Some((strands, _)) => Some((strands, GuardShader::new(*pelt, strands, lighting, normals, view.eye_m)?)),
+            None => None,
+        };
+        let skin_camera_m = pelt.skin.positions_m.iter().map(|&p| view.camera_from_world(p)).collect();
+        let undercoat = volume.map(|volume| (volume, UndercoatShader::new(pelt, lighting)));
+        Ok(Self { pelt, lighting, normals, view, settings, skin_camera_m, guard, undercoat })
+    }
+
+    pub(super) fn run(&self, picture: &mut Picture) -> Film {
+        let [width, height] = self.settings.size;
+        let mut film = Film::new(width, height);
+        let whole = Grid::whole(self.settings.size);
+
+        let start = Instant::now();
+        let triangles = self.pelt.skin.triangles.len();
+        let skin_bins = Bins::new(&whole, triangles, |t| flat::reach(&self.view, &self.corners(t as u32)));
+        let tiles: Vec<SkinTile> = (0..whole.columns * whole.rows)
+            .into_par_iter()
+            .map(|tile| {
+                let (column, row) = (tile % whole.columns, tile / whole.columns);
+                SkinTile::draw(
+                    &self.view,
+                    column,
+                    row,
+                    skin_bins.of(tile),
+                    |t| self.corners(t),
+                    |t| self.pixels(&flat::reach(&self.view, &self.corners(t))),
+                )
+            })
+            .collect();
+        row(picture, "base mesh", start, skin_bins.bytes() + tiles.len() * TILE * TILE * 8);
+
+        let start = Instant::now();
+        let entrances = self.undercoat.as_ref().map(|(volume, _)| Entrances::new(volume, &self.view, &whole));
+        row(picture, "shell entrances", start, entrances.as_ref().map_or(0, Entrances::bytes));
+
+        let start = Instant::now();
+        let strand_reach = self.strand_reaches(&whole, &tiles);
+        let bands = self.bands(&whole, &strand_reach);
+        row(picture, "strand geometry", start, strand_reach.len() * size_of::<Reach>());
+
+        for grid in bands {
+            let start = Instant::now();
+            let band = self.band(&grid, &strand_reach);
+            let bytes = band.knots.len() * (size_of::<Knot>() + size_of::<Look>()) + band.bins.bytes();
+            row(picture, "shaded strands", start, bytes);
+            picture.counts.strands += band.strands.len() as u64;
+
+            let start = Instant::now();
+            let [fragments, steps] = film_rows(&mut film, &grid)
+                .map(|mut rows| {
+                    let mut scratch = Scratch::default();
+                    let row = rows.row;
+                    for column in 0..grid.columns {
+                        let tile = (grid.first_row + row) * whole.columns + column;
+                        scratch.clear();
+                        if let Some(entrances) = &entrances {
+                            self.march_tile(entrances, tile, column, grid.first_row + row, &tiles[tile], &mut scratch);
+                        }
+                        self.tile(&grid, column, row, &tiles[tile], &band, &mut scratch, &mut rows);
+                    }
+                    [scratch.fragment_count, scratch.step_count]
+                })
+                .reduce(|| [0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+            row(picture, "march and compositing", start, 0);
+            picture.counts.fragments += fragments;
+            picture.counts.steps += steps;
+            picture.counts.pieces += band.bins.items() as u64;
+        }
+        film
+    }
+
+    pub(super) fn corners(&self, t: u32) -> [Vec3; 3] {
+        self.pelt.skin.triangles[t as usize].map(|v| self.skin_camera_m[v as usize])
+    }
+
+    /// Columns and rows of pixels whose middles may lie in `reach`.
+    pub(super) fn pixels(&self, reach: &Reach) -> [std::ops::Range<usize>; 2] {
+        [0, 1].map(|axis| {
+            let size = self.settings.size[axis];
+            let from = (reach.from[axis] - 0.5).ceil().max(0.0) as usize;
+            let to = ((reach.to[axis] - 0.5).floor() + 1.0).max(0.0) as usize;
+            from.min(size)..to.min(size)
+        })
+    }
+
+    /// What each strand may touch; nothing where skin hides it.
+    fn strand_reaches(&self, whole: &Grid, tiles: &[SkinTile]) -> Vec<Reach> {
+        let Some((strands, _)) = &self.guard else { return Vec::new() };
+        (0..strands.len())
+            .into_par_iter()
+            .map_init(Vec::new, |knots, strand| {
+                knots.clear();
+                project::knots(strands, strand, &self.view, knots);
+                let mut all = Reach::NOTHING;
+                for pair in knots.windows(2) {
+                    let piece = project::reach(&self.view, &pair[0], &pair[1]);
+                    all.from = [all.from[0].min(piece.from[0]), all.from[1].min(piece.from[1])];
+                    all.to = [all.to[0].max(piece.to[0]), all.to[1].max(piece.to[1])];
+                }
+                let nearest = knots.iter().map(|k| k.z_m).fold(f32::INFINITY, f32::min);
+                let (columns, mut rows) = whole.touched(&all);
+                let seen =
+                    rows.any(|row| columns.clone().any(|column| nearest < tiles[row * whole.columns + column].far_m));
+                if seen { all } else { Reach::NOTHING }
+            })
+            .collect()
+    }
+
+    /// Cuts the picture into bands of whole tile rows whose strands fit the budget.
+    fn bands(&self, whole: &Grid, reaches: &[Reach]) -> Vec<Grid> {
+        let points = self.guard.as_ref().map_or(0, |(strands, _)| strands.points_per_strand);
+        let per_strand = points * (size_of::<Knot>() + size_of::<Look>() + 12);
+        let mut starting = vec![0_usize; whole.rows];
+        let mut crossing = vec![0_isize; whole.rows + 1];
+        for rows in reaches.iter().map(|reach| whole.touched(reach).1).filter(|rows| !rows.is_empty()) {
+            starting[rows.start] += 1;
+            crossing[rows.start] += 1;
+            crossing[rows.end] -= 1;
+        }
+        let mut bands = Vec::new();
+        let (mut first, mut held, mut running) = (0, 0_usize, 0_isize);
+        for row in 0..whole.rows {
+            let entered = running.max(0) as usize;
+            if row > first && (held + starting[row]) * per_strand > self.settings.band_bytes {
+                bands.push(Grid { first_row: first, rows: row - first, ..*whole });
+                (first, held) = (row, entered);
+            }
+            held += starting[row];
+            running += crossing[row];
+            // Strands that end above the next row are no longer carried.
+            running = running.max(0);
+        }
+        bands.push(Grid { first_row: first, rows: whole.rows - first, ..*whole });
+        bands
+    }
+
+    fn band(&self, grid: &Grid, reaches: &[Reach]) -> Band {
+        let Some((strands, shader)) = &self.guard else {
+            return Band { bins: Bins::new(grid, 0, |_| Reach::NOTHING), ..Band::default() };
+        };
+        let visible: Vec<u32> = (0..reaches.len() as u32)
+            .into_par_iter()
+            .filter(|&s| {
+                let (columns, rows) = grid.touched(&reaches[s as usize]);
+                !columns.is_empty() && !rows.is_empty()
+            })
+            .collect();
+        const CHUNK: usize = 512;
+        let parts: Vec<(Vec<Knot>, Vec<Look>)> = visible
+            .par_chunks(CHUNK)
+            .map(|chunk| {
+                let size = chunk.len() * strands.points_per_strand;
+                let (mut knots, mut looks) = (Vec::with_capacity(size), Vec::with_capacity(size));
+                for &strand in chunk {
+                    project::knots(strands, strand as usize, &self.view, &mut knots);
+                    shader.strand(strand as usize, &mut looks);
+                }
+                (knots, looks)
+            })
+            .collect();
+        let size = visible.len() * strands.points_per_strand;
+        let (mut knots, mut looks) = (Vec::with_capacity(size), Vec::with_capacity(size));
+        for (some_knots, some_looks) in parts {
+            knots.extend(some_knots);
+            looks.extend(some_looks);
+        }
+        let points = strands.points_per_strand;
+        let bins = Bins::new(grid, knots.len(), |i| {
+            if i % points == points - 1 {
+                return Reach::NOTHING;
+            }
+            project::reach(&self.view, &knots[i], &knots[i + 1])
+        });
+        Band { strands: visible, knots, looks, bins }
+    }
+}
