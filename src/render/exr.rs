@@ -43,6 +43,6 @@ pub fn encode(film: &Film) -> Result<Vec<u8>> {
     Image::from_layer(layer)
         .write()
         .to_buffered(&mut bytes)
-        .map_err(|e| self::Error::new(Kind::Output, "the film cannot be encoded as EXR").with_found(e))?;
+        .map_err(|e| Error::new(Kind::Output, "the film cannot be encoded as EXR").with_found(e))?;
     Ok(bytes.into_inner())
 }
