@@ -3,6 +3,9 @@
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
 #import furrier::coat::{CoatVertex, tile}
 
+// Texels along the edge per texel along the hair that one fetch may average.
+const MAX_STRETCH: f32 = 4.0;
+
 struct FinEdge {
     // Coat vertices of its ends.
     ends: vec2<u32>,
@@ -73,8 +76,15 @@ fn vertex(@builtin(vertex_index) index: u32) -> Varyings {
 
 @fragment
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
-    let surface = textureSample(fin_albedo, fin_sampler, in.uv, 0);
-    let medium = textureSample(fin_tangent, fin_sampler, in.uv, 0);
+    // Where fins stand close, a pixel spans many texels along the edge and few along the hair. A mip that holds the former
+    // would mix roots and tips, so no more of the width counts than a sampler can take apart.
+    let size = vec2<f32>(textureDimensions(fin_albedo).xy);
+    let uv_dx = dpdx(in.uv);
+    let uv_dy = dpdy(in.uv);
+    let texels = vec2(length(vec2(uv_dx.x, uv_dy.x)), length(vec2(uv_dx.y, uv_dy.y))) * size;
+    let narrowed = vec2(min(1.0, MAX_STRETCH * max(texels.y, 1.0) / max(texels.x, 1e-6)), 1.0);
+    let surface = textureSampleGrad(fin_albedo, fin_sampler, in.uv, 0, uv_dx * narrowed, uv_dy * narrowed);
+    let medium = textureSampleGrad(fin_tangent, fin_sampler, in.uv, 0, uv_dx * narrowed, uv_dy * narrowed);
     let present = in.tint.w * smoothstep(0.0, 0.01, length(in.offset_m) / tile.height_m);
     let depth = -log(max(1.0 - surface.a, 1e-3)) * in.weight * present;
     let opacity = 1.0 - exp(-depth);

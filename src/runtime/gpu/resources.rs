@@ -87,7 +87,7 @@ impl GpuTile {
                 view(&ends),
             ],
         );
-        let fin_sampler = sampler(gpu, [Wrap::Repeat, Wrap::Clamp], 1);
+        let fin_sampler = sampler(gpu, [Wrap::Repeat, Wrap::Clamp], 4);
         let fin = bind(
             gpu,
             &layouts.fin,
