@@ -232,6 +232,6 @@ fn density_and_length_change_coverage_as_the_model_says() {
         within("baked half as long", halved, depth(stack_coverage(&short, theta, Mat3::IDENTITY, 1.0)));
         // σ = ρ⊥ D sin∠ integrated over the height: ρ D h tan θ, with ρ from the roots per area.
         let rho = 600.0e4 * 15e-6 * 5e-3;
-        within("the closed form", one, rho * (theta as f32).to_radians().tan());
+        within("the closed form", one, rho * theta.to_radians().tan());
     }
 }

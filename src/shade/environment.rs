@@ -230,8 +230,8 @@ fn radiance_row<'a>(mut rest: &'a [u8], row: &mut [[u8; 4]]) -> Option<&'a [u8]>
             }
             let same = code > 128;
             let values = tail.get(..if same { 1 } else { run })?;
-            for i in 0..run {
-                row[x + i][channel] = values[if same { 0 } else { i }];
+            for (i, pixel) in row[x..x + run].iter_mut().enumerate() {
+                pixel[channel] = values[if same { 0 } else { i }];
             }
             rest = &tail[values.len()..];
             x += run;

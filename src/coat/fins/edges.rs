@@ -15,13 +15,16 @@ pub struct Surface<'a> {
     pub triangles: &'a [[u32; 3]],
 }
 
+/// A face beside an edge: the edge's coat vertices in the face's order, the vertex opposite, the face's area in m².
+type Face = ([u32; 2], u32, f32);
+
 /// One fin per edge of the welded surface, borders included; edges of no length are left out.
 ///
 /// Each triangle gives a third of its area to each of its edges, so a fin's thickness is that area over the edge's
 /// length and all fins together hold the coat once.
 pub fn edges(surface: &Surface<'_>, texture: &FinTexture, seed: u64) -> Vec<FinEdge> {
     // Edge of the welded surface → its first sighting: coat vertices, opposite vertex, area; then a second face.
-    let mut faces: BTreeMap<[u32; 2], Vec<([u32; 2], u32, f32)>> = BTreeMap::new();
+    let mut faces: BTreeMap<[u32; 2], Vec<Face>> = BTreeMap::new();
     for &[a, b, c] in surface.triangles {
         let [pa, pb, pc] = [a, b, c].map(|v| surface.positions_m[v as usize]);
         let area_m2 = 0.5 * (pb - pa).cross(pc - pa).length();
@@ -31,7 +34,7 @@ pub fn edges(surface: &Surface<'_>, texture: &FinTexture, seed: u64) -> Vec<FinE
             faces.entry(key).or_default().push(([from, to], opposite, area_m2));
         }
     }
-    let fin = |(key, faces): (&[u32; 2], &Vec<([u32; 2], u32, f32)>)| {
+    let fin = |(key, faces): (&[u32; 2], &Vec<Face>)| {
         let (ends, opposite, _) = faces[0];
         let length_m = surface.positions_m[ends[0] as usize].distance(surface.positions_m[ends[1] as usize]);
         if length_m <= 0.0 {

@@ -73,8 +73,8 @@ impl Patch {
         let mut patch = Self::default();
         let frame = frame(surface, seed, DVec2::X, DVec2::X);
         let uv = surface.faces[seed].corners_m().map(|p| frame.turn.rotate(p));
-        for k in 0..3 {
-            patch.push_vertex(surface.place(seed, k), uv[k]);
+        for (k, uv) in uv.into_iter().enumerate() {
+            patch.push_vertex(surface.place(seed, k), uv);
         }
         patch.push_face(seed, [0, 1, 2], frame);
         patch
