@@ -17,6 +17,9 @@ use layout::ViewUniform;
 use pipelines::{COLOUR, DEPTH, EDGE_SAMPLES, Pipelines, RESOLVED};
 use resources::{GpuFur, GpuSkin, GpuTile};
 
+/// What the picture holds before it is written, so that a pixel that never is shows.
+const POISON: wgpu::Color = wgpu::Color { r: f64::NAN, g: f64::NAN, b: f64::NAN, a: f64::NAN };
+
 /// Time and memory of one pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassCost {
@@ -222,10 +225,7 @@ impl<'a> Renderer<'a> {
                 view: target,
                 depth_slice: None,
                 resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Store,
-                },
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(POISON), store: wgpu::StoreOp::Store },
             })],
             ..Default::default()
         });
