@@ -1,6 +1,6 @@
 // Skin: opaque, with the base colour of the asset; under a coat it lies in the coat's shadow.
 #import furrier::view::{view, ray_direction}
-#import furrier::shading::{skin_radiance, above_horizon}
+#import furrier::shading::skin_radiance
 #import furrier::coat::{hair_sampler, albedo_texture}
 
 @group(2) @binding(0) var base_sampler: sampler;

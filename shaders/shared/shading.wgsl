@@ -41,9 +41,9 @@ fn lobe(angle: f32, width: f32) -> f32 {
     return exp(-0.5 * angle * angle / (width * width)) / (width * sqrt(2.0 * PI));
 }
 
-// Radiance towards the viewer per irradiance, from light that reaches the hair directly: the diffuse term of Kajiya and
-// Kay 1989 eq. (14) with sin = sqrt(1 - (l.m)^2), exact for the mean over spread tangents when diffuse is squared, and two
-// lobes along the cone that a tilted cylinder reflects into (Marschner et al. 2003).
+// Radiance towards the viewer per irradiance: the diffuse term of Kajiya and Kay 1989 with sin = sqrt(1 - (l·m)²), where
+// `diffuse_reach` of the light arrives per channel, and two lobes along the cone that a tilted cylinder reflects into
+// (Marschner et al. 2003), where `direct` arrives.
 fn scattered(hair: Hair, to_light: vec3<f32>, direct: f32, diffuse_reach: vec3<f32>) -> vec3<f32> {
     let along_light = dot(hair.tangent, to_light);
     let sin_light = sqrt(max(0.0, 1.0 - along_light * along_light));
