@@ -86,33 +86,40 @@ pub struct TileRecipe {
 pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
     let size = recipe.shells.texture_size as usize;
     let slabs = recipe.shells.layers as usize - 1;
-    let slopes = slopes(hair, slabs);
-    let mut guard = Voxels::new(size, slabs, hair.edge_m, hair.height_m);
-    guard.deposit(&hair.guard, &slopes, 0.0);
-    let mut kappa = ends::guard_ends(&hair.guard, &guard, &slopes);
-    let mut voxels = Voxels::new(size, slabs, hair.edge_m, hair.height_m);
-    voxels.deposit(&hair.undercoat, &slopes, undercoat_width_m(hair));
-    voxels.add(&guard);
-    ends::add_undercoat_ends(&hair.undercoat, &mut kappa, &voxels);
-    let (transmittance, skin_transmittance) = shadow::transmittance(&voxels, &kappa);
-    let shells = encode(&Raw {
-        voxels: &voxels,
-        ends: &kappa,
-        transmittance: &transmittance,
-        skin_transmittance: &skin_transmittance,
-        skin: recipe.skin,
-        slopes: &slopes,
-    });
+    let lean = leaning(recipe.lean_deg);
+    // The textures, the fin and the truth that gains are fitted to need nothing of each other.
+    let shells = || {
+        let slopes = slopes(hair, slabs);
+        let empty = Voxels::new(size, slabs, hair.edge_m, hair.height_m);
+        let guard = empty.deposited(&hair.guard, &slopes, 0.0);
+        let mut kappa = ends::guard_ends(&hair.guard, &guard, &slopes);
+        let mut voxels = empty.deposited(&hair.undercoat, &slopes, undercoat_width_m(hair));
+        voxels.add(&guard);
+        ends::add_undercoat_ends(&hair.undercoat, &mut kappa, &voxels);
+        let (transmittance, skin_transmittance) = shadow::transmittance(&voxels, &kappa);
+        let shells = encode(&Raw {
+            voxels: &voxels,
+            ends: &kappa,
+            transmittance: &transmittance,
+            skin_transmittance: &skin_transmittance,
+            skin: recipe.skin,
+            slopes: &slopes,
+        });
+        (shells, slab_means(&transmittance, slabs))
+    };
+    let truth = || {
+        let worn = hair.worn(lean);
+        gains::strand_transmittance(worn.scene(), worn.edge_m, worn.height_m, lean)
+    };
+    let fin = || texture::composite(hair, &recipe.fins);
+    let ((shells, slab_transmittance), (truth, fin)) = rayon::join(shells, || rayon::join(truth, fin));
     let mut tile = Tile {
         preset: recipe.preset.clone(),
         edge_m: hair.edge_m,
         height_m: hair.height_m,
         shells,
-        fin: texture::bake(hair, &recipe.fins, &slab_means(&transmittance, slabs)),
+        fin: texture::encode(&fin, hair, &recipe.fins, &slab_transmittance),
     };
-    let lean = leaning(recipe.lean_deg);
-    let worn = hair.worn(lean);
-    let truth = gains::strand_transmittance(worn.scene(), worn.edge_m, worn.height_m, lean);
     tile.shells.gains = gains::fit(&tile, &truth, lean);
     tile
 }

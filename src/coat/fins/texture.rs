@@ -28,17 +28,23 @@ struct Level {
     texels: Vec<Texel>,
 }
 
-/// Bakes the slab 0 ≤ y < thickness of the tile, seen along +y. `slab_transmittance` is the shells' mean transmittance
-/// to the outside per slab, skin first; each row takes that of its height.
-pub fn bake(hair: &TileHair, parameters: &FinParameters, slab_transmittance: &[f32]) -> FinTexture {
+/// The mips of a fin texture before coding.
+pub struct Slab(Vec<Level>);
+
+/// Composites the slab 0 ≤ y < thickness of the tile, seen along +y.
+pub fn composite(hair: &TileHair, parameters: &FinParameters) -> Slab {
     let [width, height] = [parameters.texture_width as usize, parameters.texture_height as usize];
-    let thickness_m = parameters.thickness_mm * 1e-3;
-    let base = Level { width, height, texels: composite(hair, width, height, thickness_m) };
-    let levels = pyramid(base);
+    Slab(pyramid(Level { width, height, texels: cast(hair, width, height, parameters.thickness_mm * 1e-3) }))
+}
+
+/// Codes a slab. `slab_transmittance` is the shells' mean transmittance to the outside per slab, skin first; each row
+/// takes that of its height.
+pub fn encode(slab: &Slab, hair: &TileHair, parameters: &FinParameters, slab_transmittance: &[f32]) -> FinTexture {
+    let levels = &slab.0;
     FinTexture {
         size: [parameters.texture_width, parameters.texture_height],
         width_m: hair.edge_m,
-        thickness_m,
+        thickness_m: parameters.thickness_mm * 1e-3,
         albedo: levels.iter().map(|level| code(level, |t, _| albedo(t))).collect(),
         tangent: levels
             .iter()
@@ -54,7 +60,7 @@ pub fn bake(hair: &TileHair, parameters: &FinParameters, slab_transmittance: &[f
     }
 }
 
-fn composite(hair: &TileHair, width: usize, height: usize, thickness_m: f32) -> Vec<Texel> {
+fn cast(hair: &TileHair, width: usize, height: usize, thickness_m: f32) -> Vec<Texel> {
     let (fine_width, fine_height) = (width * SUPERSAMPLING, height * SUPERSAMPLING);
     let ray = |i: usize| {
         let x = ((i % fine_width) as f32 + 0.5) / fine_width as f32;

@@ -2,6 +2,11 @@
 
 use crate::data::strands::Strands;
 use crate::math::{Vec2, Vec3};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Batches that strands are deposited in.
+const BATCHES: usize = 4;
 
 /// The slabs of a tile, `[slab][y][x]`, slab 0 at the skin.
 #[derive(Clone, Debug)]
@@ -50,11 +55,29 @@ impl Voxels {
         &values[slab * n..(slab + 1) * n]
     }
 
-    /// Deposits strands. Each piece goes where the mean strand through it, of slope `slopes[slab]`, crosses the slab's
+    /// Strands deposited into empty voxels of this layout, a fixed number of batches side by side, so that the sums come
+    /// out the same for any number of threads. See [`Self::deposit`].
+    pub fn deposited(&self, strands: &Strands, slopes: &[Vec2], least_width_m: f32) -> Self {
+        let batch = strands.len().div_ceil(BATCHES).max(1);
+        let batches: Vec<Self> = (0..BATCHES)
+            .into_par_iter()
+            .map(|b| {
+                let mut voxels = Self::new(self.size, self.slabs, self.edge_m, self.slab_m * self.slabs as f32);
+                let range = (b * batch).min(strands.len())..((b + 1) * batch).min(strands.len());
+                voxels.deposit(strands, range, slopes, least_width_m);
+                voxels
+            })
+            .collect();
+        let mut sum = Self::new(self.size, self.slabs, self.edge_m, self.slab_m * self.slabs as f32);
+        batches.iter().for_each(|voxels| sum.add(voxels));
+        sum
+    }
+
+    /// Deposits the strands of `range`. Each piece goes where the mean strand through it, of slope `slopes[slab]`, crosses the slab's
     /// middle, spread over a square as wide as the hair (equal in area to its cross-section) or `least_width_m`.
-    pub fn deposit(&mut self, strands: &Strands, slopes: &[Vec2], least_width_m: f32) {
+    pub fn deposit(&mut self, strands: &Strands, range: Range<usize>, slopes: &[Vec2], least_width_m: f32) {
         let segments = strands.points_per_strand - 1;
-        for strand in 0..strands.len() {
+        for strand in range {
             let points = strands.points_of_m(strand);
             for (i, pair) in points.windows(2).enumerate() {
                 let along = pair[1] - pair[0];

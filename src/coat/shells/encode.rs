@@ -4,6 +4,7 @@ use super::deposit::Voxels;
 use crate::data::coat::ShellStack;
 use crate::data::image::{Image8, srgb_from_linear, unorm8};
 use crate::math::{Vec2, Vec3};
+use rayon::prelude::*;
 
 /// One texel before coding.
 #[derive(Clone, Copy, Debug, Default)]
@@ -74,10 +75,11 @@ pub fn encode(raw: &Raw<'_>) -> ShellStack {
         medium: Vec::new(),
         ends: Vec::new(),
     };
-    let pyramids: Vec<Vec<Vec<Texel>>> = layers.into_iter().map(pyramid).collect();
+    let pyramids: Vec<Vec<Vec<Texel>>> = layers.into_par_iter().map(pyramid).collect();
     let colours: Vec<Vec<Vec<Vec3>>> = pyramids.iter().map(|p| dilated(p)).collect();
     for mip in 0..pyramids[0].len() {
-        let level = |f: &dyn Fn(usize) -> Image8| (0..pyramids.len()).map(f).collect::<Vec<_>>();
+        let level =
+            |f: &(dyn Fn(usize) -> Image8 + Sync)| (0..pyramids.len()).into_par_iter().map(f).collect::<Vec<_>>();
         let hair = pyramids[1..].iter().flat_map(|pyramid| &pyramid[mip]);
         let scale = hair.map(|t| t.extinction).fold(f32::MIN_POSITIVE, f32::max);
         stack.gains.push([1.0; 9]);
