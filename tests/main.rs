@@ -31,6 +31,7 @@ mod ribbons;
 mod runtime;
 mod shaders;
 mod silhouette;
+mod sphere;
 mod summary;
 mod twins;
 mod undercoat;

@@ -7,7 +7,7 @@ use crate::data::mesh::Mesh;
 use crate::error::Result;
 use crate::fur::field::{FieldSource, directions};
 use crate::fur::groom::maps::{Maps, comb_directions};
-use crate::fur::groom::{Comb, fields};
+use crate::fur::groom::{ColourSource, Comb, fields};
 use crate::math::{Vec3, Vec4};
 use crate::preset::{self, Preset};
 
@@ -67,6 +67,9 @@ fn comb(mesh: &Mesh, preset: &Preset, maps: &Maps) -> Result<Vec<Vec3>> {
 /// Hair colour per vertex: base-colour texture, factor and vertex colours; the preset's tint where the asset has none.
 fn tint(asset: &Asset, part: &Part, mesh: &Mesh, preset: &Preset) -> Result<Vec<Vec3>> {
     let count = mesh.positions_m.len();
+    if preset.colour.from == ColourSource::Preset {
+        return Ok(vec![Vec3::from(preset.colour.tint); count]);
+    }
     let BaseColour { factor, texture } = &part.base_colour;
     let image = match texture {
         Some(texture) => asset.document.decode_image(texture.image)?.map(|image| (texture, image)),

@@ -124,11 +124,23 @@ pub struct Groom {
     pub gravity: f32,
 }
 
+/// Whose hair colour it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ColourSource {
+    /// The asset's base colour (texture, factor, vertex colours) under the root; the preset's tint where it has none.
+    Asset,
+    /// The preset's tint everywhere.
+    Preset,
+}
+
 /// Colour of hair and skin, linear RGB in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Colour {
-    /// Hair colour where the mesh gives none (base-colour texture, factor or vertex colours).
+    /// Where hair takes its colour from; a colour map decides before either.
+    pub from: ColourSource,
+    /// The preset's own hair colour.
     pub tint: [f32; 3],
     /// Factors along a guard hair: root, middle, tip.
     pub guard: [[f32; 3]; 3],
@@ -193,6 +205,7 @@ impl Default for Groom {
 impl Default for Colour {
     fn default() -> Self {
         Self {
+            from: ColourSource::Asset,
             tint: [0.35, 0.22, 0.12],
             guard: [[0.6; 3], [0.9; 3], [1.0; 3]],
             undercoat: [[0.7; 3], [0.8; 3], [0.9; 3]],
