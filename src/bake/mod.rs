@@ -4,7 +4,7 @@ pub mod picture;
 mod skin;
 pub mod units;
 
-use crate::asset::coat::{Fallback, write_coat};
+use crate::asset::coat::{Fallback, refuse_second, write_coat};
 use crate::asset::{self, Part};
 use crate::coat::judge::{Effort, Row, coverage_table};
 use crate::coat::tile::{TileHair, TileRecipe, bake as bake_tile, leaning};
@@ -114,6 +114,7 @@ impl Steps<'_> {
 pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Baked> {
     let mut steps = Steps { tell, timings: Vec::new() };
     let asset = steps.run("read", || asset::load(&request.input))?;
+    refuse_second(&asset)?;
     refuse_own_input(&request.input, &request.out)?;
     let chosen = asset::select(&asset.parts, &request.materials)?;
     for (material, _) in &request.presets {

@@ -10,7 +10,7 @@ pub use fallback::Fallback;
 pub use flatten::shells as flatten_shells;
 pub use read::{coat_of, read_coat};
 use write::set_extension;
-pub use write::{dress, write_coat};
+pub use write::{dress, refuse_second, write_coat};
 
 use super::json::At;
 use serde_json::json;

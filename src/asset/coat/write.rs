@@ -93,20 +93,29 @@ fn take_images_along(document: &mut Document) -> Result<Vec<String>> {
     Ok(notes)
 }
 
+/// Fails where the asset wears a coat already: worth asking before a long bake.
+///
+/// # Errors
+/// Names the extension.
+pub fn refuse_second(asset: &Asset) -> Result<()> {
+    if asset.document.root().get("extensions").is_none_or(|e| e.get(NAME).is_none()) {
+        return Ok(());
+    }
+    Err(Error::input("the input wears a coat already")
+        .with_file(&asset.document.name)
+        .with_field(format!("extensions.{NAME}"))
+        .with_found("a coat")
+        .with_expected("an asset without one")
+        .with_hint("bake from the file that this one was made from"))
+}
+
 /// The asset's document with the coat added: all that is new stands behind what was there.
 ///
 /// # Errors
 /// When the asset has a coat already, or the coat does not fit it.
 pub fn dress(asset: &Asset, coat: &Coat, fallback: Fallback) -> Result<Document> {
+    refuse_second(asset)?;
     let mut document = asset.document.clone();
-    if document.root().get("extensions").is_some_and(|e| e.get(NAME).is_some()) {
-        return Err(Error::input("the input wears a coat already")
-            .with_file(&document.name)
-            .with_field(format!("extensions.{NAME}"))
-            .with_found("a coat")
-            .with_expected("an asset without one")
-            .with_hint("bake from the file that this one was made from"));
-    }
     let mut tiles = Vec::new();
     for tile in &coat.tiles {
         tiles.push(textures::write(&mut document, tile)?);
