@@ -14,6 +14,9 @@ const NEAR_TAPS: f32 = 16.0;
 const FAR_TAPS: f32 = 4.0;
 // An opacity that no eight-bit picture shows; writing depth for it would hide hair behind it.
 const INVISIBLE: f32 = 0.002;
+// Hair deeper than this is hidden as well as it is dark; where it is seen all the same, at a border or in a parting, light
+// finds the way that the eye found.
+const DEEPEST: f32 = 2.5;
 
 @group(2) @binding(0) var<storage, read> vertices: array<CoatVertex>;
 @group(2) @binding(1) var<storage, read> indices: array<u32>;
@@ -128,7 +131,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let agreement = min(length(medium.tangent) / max(medium.extinction, 1e-3), 1.0);
     let tangent = normalize(at.world_from_tile * (medium.tangent + vec3(0.0, 0.0, 1e-3))) * agreement;
     let hair = Hair(surface.rgb * in.tint.rgb, tangent, normal, -world_ray);
-    let outside_depth = -log(max(surface.a, 1e-3)) * present;
+    let outside_depth = min(-log(max(surface.a, 1e-3)), DEEPEST) * present;
     var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
     for (var i = 0u; i < view.light_count; i++) {
         let light = view.lights[i];

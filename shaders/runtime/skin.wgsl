@@ -29,6 +29,9 @@ fn vertex(
     return Varyings(clip, position_m, normal, colour, uv, coat_uv, coat_density);
 }
 
+// Skin that is seen lies at a border or in a parting, where light finds the way that the eye found.
+const DEEPEST: f32 = 1.5;
+
 @fragment
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     // Layer 0 of the tile: colour factor of the skin under hair, and how much light comes through.
@@ -39,7 +42,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let world_ray = ray_direction(in.position_m);
     let turned = normalize(in.normal);
     let normal = select(turned, -turned, dot(turned, world_ray) > 0.0);
-    let outside_depth = -log(max(cover.a, 1e-3)) * in.coat_density;
+    let outside_depth = min(-log(max(cover.a, 1e-3)) * in.coat_density, DEEPEST);
     let gloss = select(1.0, 0.0, furred);
 
     var radiance = albedo * view.ambient * exp(-outside_depth);
