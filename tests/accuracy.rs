@@ -54,14 +54,19 @@ fn table(guard: bool, shape: Shape, lean_deg: f32) -> Vec<Row> {
     rows
 }
 
-fn holds(rows: &[Row]) {
-    for r in rows {
+/// The first row whose coverage is off by more than 2 points (5 past 60°), or whose structure is not twice as good as with
+/// constant α.
+pub fn fault(rows: &[Row]) -> Option<Row> {
+    let off = |r: &&Row| {
         let bound = if r.theta_deg > 61.0 { 0.05 } else { 0.02 };
-        assert!((r.stack - r.strands).abs() <= bound, "coverage at {}°: {r:?}", r.theta_deg);
-        if r.theta_deg == 40.0 || r.theta_deg == 60.0 {
-            assert!(r.rmse <= 0.5 * r.rmse_constant, "structure at {}°: {r:?}", r.theta_deg);
-        }
-    }
+        let judged = r.theta_deg == 40.0 || r.theta_deg == 60.0;
+        (r.stack - r.strands).abs() > bound || (judged && r.rmse > 0.5 * r.rmse_constant)
+    };
+    rows.iter().find(off).copied()
+}
+
+fn holds(rows: &[Row]) {
+    assert_eq!(fault(rows), None);
 }
 
 #[test]

@@ -146,3 +146,18 @@ fn the_golden_ball_tells_small_changes() {
     shifted.alpha.rotate_right(1);
     assert!(!like_golden(&of(shifted)));
 }
+
+#[test]
+fn coverage_and_structure_tell_a_stack_that_is_off() {
+    use furrier::coat::judge::Row;
+    let good = Row { theta_deg: 40.0, strands: 0.8, stack: 0.81, constant: 0.3, rmse: 0.07, rmse_constant: 0.6 };
+    assert_eq!(crate::accuracy::fault(&[good]), None);
+    for faulty in [
+        Row { stack: good.constant, ..good },
+        Row { stack: 0.775, ..good },
+        Row { rmse: 0.35, ..good },
+        Row { theta_deg: 85.0, stack: 0.74, ..good },
+    ] {
+        assert_eq!(crate::accuracy::fault(&[good, faulty]), Some(faulty));
+    }
+}
