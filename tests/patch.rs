@@ -115,23 +115,26 @@ fn atlas_charts_hold_the_sphere_without_overlap() {
     }
 }
 
+/// Every shared mesh that the test's reader opens, in the order of their names.
+fn shared_meshes(shared: &std::path::Path) -> impl Iterator<Item = (std::path::PathBuf, Mesh)> {
+    let files = |folder| std::fs::read_dir(shared.join(folder)).expect("readable").map(|e| e.expect("entry").path());
+    let mut paths: Vec<_> = ["real", "hard"].into_iter().flat_map(files).collect();
+    paths.sort();
+    paths.retain(|path| path.extension().is_some_and(|e| e == "glb"));
+    paths.into_iter().filter_map(|path| meshes::read_glb(&path).map(|mesh| (path, mesh)))
+}
+
 #[test]
 fn every_shared_mesh_is_covered_by_its_atlas() {
     let Some(shared) = shared() else { return };
-    for folder in ["real", "hard"] {
-        let mut paths: Vec<_> =
-            std::fs::read_dir(shared.join(folder)).expect("readable").map(|e| e.expect("entry").path()).collect();
-        paths.sort();
-        for path in paths.iter().filter(|p| p.extension().is_some_and(|e| e == "glb")) {
-            let Some(mesh) = meshes::read_glb(path) else { continue };
-            if mesh.triangles.len() > 20_000 {
-                continue; // xatlas needs 10 s for these.
-            }
-            let comb = meshes::tangent(&mesh, |_| Vec3::new(0.0, -1.0, -0.3));
-            let tile = mesh.diagonal_m() / 20.0;
-            let patches = parameterise(&mesh, &comb, tile, ATLAS).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-            covers(&mesh, &patches).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    for (path, mesh) in shared_meshes(&shared) {
+        if mesh.triangles.len() > 20_000 {
+            continue; // xatlas needs 10 s for these.
         }
+        let comb = meshes::tangent(&mesh, |_| Vec3::new(0.0, -1.0, -0.3));
+        let tile = mesh.diagonal_m() / 20.0;
+        let patches = parameterise(&mesh, &comb, tile, ATLAS).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        covers(&mesh, &patches).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     }
 }
 
@@ -140,21 +143,15 @@ const LAPPED: Parameterisation = Parameterisation::Lapped { seed: 1 };
 #[test]
 fn lapped_patches_cover_every_shared_mesh_and_lie_flat() {
     let Some(shared) = shared() else { return };
-    for folder in ["real", "hard"] {
-        let mut paths: Vec<_> =
-            std::fs::read_dir(shared.join(folder)).expect("readable").map(|e| e.expect("entry").path()).collect();
-        paths.sort();
-        for path in paths.iter().filter(|p| p.extension().is_some_and(|e| e == "glb")) {
-            let Some(mesh) = meshes::read_glb(path) else { continue };
-            let comb = directions(&mesh, &[FieldSource::Tailward { sag: 0.3 }]).expect("a comb").direction;
-            let patches = parameterise(&mesh, &comb, mesh.diagonal_m() / 20.0, LAPPED).expect("patches");
-            covers(&mesh, &patches).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-            let s = &patches.stats;
-            assert!(s.within > 0.95 && s.field_angle_rad < 10_f64.to_radians(), "{}: {s:?}", path.display());
-            assert_eq!(s.mirrored_m2, 0.0, "{}", path.display());
-            if path.ends_with("bunny_5k.glb") {
-                assert!(s.patches <= 300, "{s:?}");
-            }
+    for (path, mesh) in shared_meshes(&shared) {
+        let comb = directions(&mesh, &[FieldSource::Tailward { sag: 0.3 }]).expect("a comb").direction;
+        let patches = parameterise(&mesh, &comb, mesh.diagonal_m() / 20.0, LAPPED).expect("patches");
+        covers(&mesh, &patches).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        let s = &patches.stats;
+        assert!(s.within > 0.95 && s.field_angle_rad < 10_f64.to_radians(), "{}: {s:?}", path.display());
+        assert_eq!(s.mirrored_m2, 0.0, "{}", path.display());
+        if path.ends_with("bunny_5k.glb") {
+            assert!(s.patches <= 300, "{s:?}");
         }
     }
 }
