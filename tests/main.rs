@@ -32,6 +32,7 @@ mod runtime;
 mod shaders;
 mod silhouette;
 mod sphere;
+mod strand_files;
 mod summary;
 mod twins;
 mod undercoat;

@@ -19,6 +19,7 @@ mod repair;
 pub mod sample;
 pub mod scene;
 mod select;
+pub mod strands;
 mod uri;
 mod validate;
 pub mod write;

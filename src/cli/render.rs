@@ -3,15 +3,15 @@
 use super::bake::UnitName;
 use super::console::Console;
 use super::output;
+use crate::asset::strands;
 use crate::bake::picture::{Grown, Only, Scene, studio};
 use crate::data::camera::Camera;
 use crate::error::{Error, Result};
-use crate::math::{DVec3, Vec3};
+use crate::math::Vec3;
 use crate::preset::Preset;
 use crate::render::develop::{Development, develop};
 use crate::render::pelt::Lighting;
 use crate::render::picture::{Picture, Settings};
-use crate::render::rays;
 use crate::render::resolve::Blending;
 use crate::shade::environment::Environment;
 use crate::viewer;
@@ -30,6 +30,7 @@ Examples:
   furrier render bunny.glb -o bunny.exr --preset rabbit --quality final --size 1920x1137
   furrier render bunny.glb -o lit.png --env studio.hdr --light dir:-1,-2,-1:5,5,5 --orbit 60,20,1
   furrier render bunny.glb -o guard.png --only guard --report guard.json
+  furrier render bunny.glb -o bunny.png --export-strands bunny.usda
 
 An .exr holds every layer: radiance, alpha, distance, normal, tangent, albedo, and the parts of guard hair and undercoat.")]
 pub struct Render {
@@ -86,6 +87,9 @@ pub struct Render {
     /// Decides all that is random
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Write the guard hairs to this file, as curves in the input's units; undercoat is a volume and has none
+    #[arg(long, value_name = "FILE.usda|.hair")]
+    export_strands: Option<PathBuf>,
     /// Write times, memory and counts to this JSON file
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
@@ -123,6 +127,15 @@ impl Render {
                 .with_expected("a name that ends in .png or .exr"));
         }
         output::check(&self.output, &[Path::new(&self.input)])?;
+        let strands = self.export_strands.as_deref().map(|file| Ok((file, strands::Format::of(file)?))).transpose()?;
+        if let Some((file, _)) = &strands {
+            output::check(file, &[Path::new(&self.input), &self.output])?;
+        }
+        if let Some(file) = &self.report {
+            let mut others = vec![Path::new(&self.input), &self.output];
+            others.extend(strands.map(|(file, _)| file));
+            output::check(file, &others)?;
+        }
         let size = super::view::size(&self.size)?.map(|n| n as usize);
         let grown = Grown::new(&self.scene()?)?;
         grown.notes.iter().for_each(|note| console.note(note));
@@ -134,6 +147,11 @@ impl Render {
         } else {
             let development = Development { exposure_ev: self.exposure, ..Development::default() };
             output::png(&self.output, &develop(&picture.film, &development))?;
+        }
+        if let Some((file, format)) = strands {
+            let name = Path::new(&self.input).file_stem().and_then(|name| name.to_str()).unwrap_or("fur");
+            let name = name.strip_prefix("sample:").unwrap_or(name);
+            output::bytes(file, &strands::encode(&grown.export(name), format)?)?;
         }
         let report = report(&picture);
         if let Some(file) = &self.report {
@@ -161,24 +179,15 @@ impl Render {
         })
     }
 
-    fn camera(&self, grown: &Grown, size: [usize; 2]) -> Result<rays::Camera> {
+    fn camera(&self, grown: &Grown, size: [usize; 2]) -> Result<Camera> {
         if let Some(file) = &self.camera {
-            let text = std::fs::read_to_string(file)
-                .map_err(|e| Error::input("the camera file cannot be read").with_file(file).with_found(e))?;
-            let camera = Camera::from_json(&text).map_err(|e| e.with_file(file))?;
-            let local = |p: [f64; 3]| (DVec3::from(p) - grown.origin_m()).as_vec3();
-            return Ok(rays::Camera {
-                eye_m: local(camera.eye),
-                target_m: local(camera.target),
-                up: DVec3::from(camera.up).as_vec3(),
-                vfov_rad: camera.vfov_deg.to_radians() as f32,
-            });
+            return super::view::read_camera(file);
         }
         let [azimuth, elevation, distance] = viewer::parse_triple(&self.orbit, "--orbit")?.to_array();
         Ok(grown.camera(azimuth, elevation, distance, size))
     }
 
-    fn lighting(&self, camera: &rays::Camera) -> Result<Lighting> {
+    fn lighting(&self, camera: &Camera) -> Result<Lighting> {
         let mut lighting = studio(camera);
         let mut given = Vec::new();
         for text in &self.lights {
