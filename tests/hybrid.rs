@@ -1,10 +1,10 @@
 //! Guard hair and undercoat in one picture: what holds wherever the eye is and whatever the hair is like.
 
 use crate::pelts::{self, Grown};
+use furrier::data::camera::Camera;
 use furrier::data::film::Film;
 use furrier::math::Vec3;
 use furrier::render::picture::{Settings, draw};
-use furrier::render::rays::Camera;
 use furrier::render::resolve::Blending;
 
 const SETTINGS: Settings = Settings {
@@ -50,12 +50,11 @@ fn an_eye_inside_the_coat_sees_hair() {
     let grown = thin();
     for eye_m in [Vec3::new(0.0, 0.043, 0.0), Vec3::new(0.01, 0.0402, 0.001), Vec3::new(0.0, 0.0, 0.0)] {
         for target_m in [Vec3::new(0.3, 0.05, 0.02), Vec3::new(0.0, 1.0, 0.01), Vec3::new(0.0, -1.0, 0.0)] {
-            let camera = Camera { eye_m, target_m, up: Vec3::Z, vfov_rad: 1.0 };
+            let camera = pelts::looking(eye_m, target_m, Vec3::Z, 57.0);
             sane(&film(&grown, &camera, &SETTINGS));
         }
     }
-    let camera =
-        Camera { eye_m: Vec3::new(0.0, 0.043, 0.0), target_m: Vec3::new(0.3, 0.043, 0.0), up: Vec3::Y, vfov_rad: 1.0 };
+    let camera = pelts::looking(Vec3::new(0.0, 0.043, 0.0), Vec3::new(0.3, 0.043, 0.0), Vec3::Y, 57.0);
     assert!(film(&grown, &camera, &SETTINGS).undercoat.iter().sum::<f32>() > 500.0);
 }
 

@@ -1,14 +1,15 @@
 //! Small pelts made in code, for tests of the renderer.
 
+use furrier::data::camera::Camera;
 use furrier::data::fields::Fields;
 use furrier::data::mesh::{Mesh, position_classes};
 use furrier::data::strands::Strands;
 use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::groom::{Colour, Guard, Length, Shape, Undercoat};
 use furrier::fur::grow::skin;
-use furrier::math::Vec3;
+use furrier::math::{DVec3, Vec2, Vec3};
 use furrier::render::pelt::{Hair, Lighting, Pelt};
-use furrier::render::rays::Camera;
+use furrier::render::view::View;
 use furrier::shade::light::Directional;
 
 /// Skin and hair that a [`Pelt`] borrows.
@@ -125,10 +126,16 @@ pub fn studio() -> Lighting {
 
 /// Looks at the origin from `distance_m` away, a little from above.
 pub fn camera(distance_m: f32) -> Camera {
-    Camera {
-        eye_m: Vec3::new(0.35, 0.55, 0.76).normalize() * distance_m,
-        target_m: Vec3::ZERO,
-        up: Vec3::Y,
-        vfov_rad: 0.6,
-    }
+    looking(Vec3::new(0.35, 0.55, 0.76).normalize() * distance_m, Vec3::ZERO, Vec3::Y, 34.0)
+}
+
+/// Looks from one point at another.
+pub fn looking(eye_m: Vec3, target_m: Vec3, up: Vec3, vfov_deg: f64) -> Camera {
+    let [eye, target, up] = [eye_m, target_m, up].map(|v| v.as_dvec3().to_array());
+    Camera { eye, target, up, vfov_deg }
+}
+
+/// What a camera sees in a picture of `size`, world coordinates.
+pub fn view(camera: &Camera, size: [usize; 2]) -> View {
+    View::new(camera, DVec3::ZERO, size, Vec2::ZERO).unwrap()
 }

@@ -99,7 +99,7 @@ pub fn ribbons_and_rays() -> (Film, Film) {
     let size = [128, 128];
     let ribbons = drawn(&grown, &Settings { size, ..Settings::default() }).film;
     let scene = Scene { guard: Some(&grown.guard), skin: Some(&grown.mesh), ..Scene::default() };
-    let rays = Rays::Perspective { camera: pelts::camera(0.35), size, supersampling: 8 };
+    let rays = Rays::Perspective { view: pelts::view(&pelts::camera(0.35), size), supersampling: 8 };
     (ribbons, Caster::new(scene).render(&rays, DepthRange::ALL))
 }
 

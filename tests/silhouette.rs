@@ -1,9 +1,10 @@
 //! The fringe of a furred sphere against the same strands, ray cast from the same camera.
 
-use crate::coats;
+use crate::{coats, pelts};
 use furrier::coat::fins::FinParameters;
 use furrier::coat::shells::ShellParameters;
 use furrier::coat::tile::{TileHair, TileRecipe, bake};
+use furrier::data::camera::Camera;
 use furrier::data::fields::Fields;
 use furrier::data::mesh::Mesh;
 use furrier::fur::groom::fibre::Fibre;
@@ -12,7 +13,7 @@ use furrier::fur::grow;
 use furrier::gpu::{Choice, Gpu};
 use furrier::math::{Vec3, Vec4};
 use furrier::render::cast::Caster;
-use furrier::render::rays::{Camera, Rays};
+use furrier::render::rays::Rays;
 use furrier::render::{DepthRange, Scene};
 use furrier::runtime::gpu::Renderer;
 use furrier::runtime::{Show, View};
@@ -24,8 +25,7 @@ const EYE: Vec3 = Vec3::new(0.06, 0.1, 0.35);
 /// Mean alpha over rings from the skin's outline to one hair length (`height_m`) beyond it, inner to outer, and over all.
 fn rings(alpha: &[f32], height_m: f32) -> [f32; 5] {
     let mut sums = [(0.0, 0.0); 5];
-    let camera = camera();
-    let rays = Rays::Perspective { camera, size: [PIXELS; 2], supersampling: 1 };
+    let rays = Rays::Perspective { view: pelts::view(&camera(), [PIXELS; 2]), supersampling: 1 };
     for (i, a) in alpha.iter().enumerate() {
         let ray = rays.ray(i % PIXELS, i / PIXELS, 0);
         let closest = EYE - ray.direction * EYE.dot(ray.direction);
@@ -41,18 +41,12 @@ fn rings(alpha: &[f32], height_m: f32) -> [f32; 5] {
 }
 
 fn camera() -> Camera {
-    Camera { eye_m: EYE, target_m: Vec3::ZERO, up: Vec3::Y, vfov_rad: 18.0_f32.to_radians() }
+    pelts::looking(EYE, Vec3::ZERO, Vec3::Y, 18.0)
 }
 
 fn view() -> View {
-    let camera = furrier::data::camera::Camera {
-        eye: EYE.as_dvec3().into(),
-        target: [0.0; 3],
-        up: [0.0, 1.0, 0.0],
-        vfov_deg: 18.0,
-    };
     View {
-        clip_from_world: camera.clip_from_world(furrier::math::DVec3::ZERO, 1.0, 0.05, 1.0).as_mat4(),
+        clip_from_world: camera().clip_from_world(furrier::math::DVec3::ZERO, 1.0, 0.05, 1.0).as_mat4(),
         eye: Vec4::from((EYE, 1.0)),
         size: [PIXELS as u32; 2],
         lights: vec![],
@@ -91,7 +85,7 @@ fn measured(gpu: &Gpu, fibres: [&Fibre; 2], lean_rad: f32, shows: &[Show]) -> ([
     };
     let [guard, undercoat] = [0, 1].map(|i| grow::skin::grow(fibres[i], &mesh, &fields, 3 + i as u64));
     let scene = Scene { guard: Some(&guard), undercoat: Some(&undercoat), skin: Some(&mesh), ..Default::default() };
-    let rays = Rays::Perspective { camera: camera(), size: [PIXELS; 2], supersampling: 3 };
+    let rays = Rays::Perspective { view: pelts::view(&camera(), [PIXELS; 2]), supersampling: 3 };
     let strands = rings(&Caster::new(scene).render(&rays, DepthRange::ALL).alpha, height_m);
     let renderer = Renderer::new(gpu, &tiles, 2).unwrap();
     let ours = shows.iter().map(|&show| {

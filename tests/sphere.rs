@@ -4,13 +4,13 @@ use furrier::asset::coat::{Fallback, read_coat};
 use furrier::bake::picture::{Grown, Only, Scene as Depicted};
 use furrier::bake::units::Units;
 use furrier::bake::{Method, Request, bake};
-use furrier::data::camera::Camera as CameraFile;
+use furrier::data::camera::Camera;
 use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::grow;
 use furrier::math::Vec3;
 use furrier::preset::Preset;
 use furrier::render::cast::Caster;
-use furrier::render::rays::{Camera, Rays};
+use furrier::render::rays::Rays;
 use furrier::render::{DepthRange, Scene};
 use furrier::runtime::Show;
 use furrier::viewer::{Framing, Options, screenshot};
@@ -52,12 +52,12 @@ fn request(preset: Preset, out: &std::path::Path) -> Request {
 }
 
 fn camera() -> Camera {
-    Camera { eye_m: EYE, target_m: Vec3::ZERO, up: Vec3::Y, vfov_rad: 20.0_f32.to_radians() }
+    crate::pelts::looking(EYE, Vec3::ZERO, Vec3::Y, 20.0)
 }
 
 /// Mean alpha in the ring of `width_m` around the skin's outline.
 fn ring(alpha: &[f32], width_m: f32) -> f32 {
-    let rays = Rays::Perspective { camera: camera(), size: [PIXELS; 2], supersampling: 1 };
+    let rays = Rays::Perspective { view: crate::pelts::view(&camera(), [PIXELS; 2]), supersampling: 1 };
     let (mut sum, mut count) = (0.0, 0.0);
     for (i, a) in alpha.iter().enumerate() {
         let ray = rays.ray(i % PIXELS, i / PIXELS, 0);
@@ -76,9 +76,8 @@ fn drawn(preset: &Preset, show: Show, width_m: f32) -> f32 {
     let out = folder.path().join("sphere.glb");
     bake(&request(preset.clone(), &out), &mut |_| {}).unwrap();
     let (asset, coat) = read_coat(&out).unwrap();
-    let eye = EYE.as_dvec3().to_array();
-    let file = CameraFile { eye, target: [0.0; 3], up: [0.0, 1.0, 0.0], vfov_deg: 20.0 };
-    let options = Options { size: [PIXELS as u32; 2], framing: Framing::Camera(file), show, ..Options::default() };
+    let framing = Framing::Camera(camera());
+    let options = Options { size: [PIXELS as u32; 2], framing, show, ..Options::default() };
     let shot = screenshot(&asset, &coat, &options).unwrap();
     ring(&shot.picture.pixels.iter().map(|p| p[3]).collect::<Vec<_>>(), width_m)
 }
@@ -99,7 +98,7 @@ fn strands(preset: &Preset, width_m: f32) -> f32 {
     let undercoat = grow::skin::grow(&fibre, pelt.skin, pelt.fields, 9);
     let guard = pelt.guard.map(|(strands, _)| strands);
     let scene = Scene { guard, undercoat: Some(&undercoat), skin: Some(pelt.skin), ..Scene::default() };
-    let rays = Rays::Perspective { camera: camera(), size: [PIXELS; 2], supersampling: 2 };
+    let rays = Rays::Perspective { view: crate::pelts::view(&camera(), [PIXELS; 2]), supersampling: 2 };
     ring(&Caster::new(scene).render(&rays, DepthRange::ALL).alpha, width_m)
 }
 

@@ -3,6 +3,8 @@
 use super::skin::{self, Groomed};
 use super::units::{self, Units};
 use crate::asset;
+use crate::asset::strands::Export;
+use crate::data::camera::Camera;
 use crate::data::mesh::Mesh;
 use crate::error::Result;
 use crate::fur::groom::fibre::Fibre;
@@ -11,8 +13,10 @@ use crate::math::{DVec3, Vec3};
 use crate::preset::Preset;
 use crate::render::pelt::{Hair, Lighting, Pelt};
 use crate::render::picture::{Picture, Settings, draw};
-use crate::render::rays::Camera;
 use std::f32::consts::PI;
+
+/// Vertical field of view of cameras that frame, degrees.
+const VFOV_DEG: f64 = 34.0;
 
 /// Which hair is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,6 +54,7 @@ pub struct Grown {
     undercoat: Fibre,
     skin_factor: Vec3,
     only: Only,
+    metres_per_unit: f64,
     /// What a person should know, one sentence each.
     pub notes: Vec<String>,
 }
@@ -87,6 +92,7 @@ impl Grown {
             undercoat: Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m),
             skin_factor: Vec3::from(preset.colour.skin),
             only: scene.only,
+            metres_per_unit: scale.metres_per_unit,
             groomed,
             notes,
         })
@@ -95,6 +101,11 @@ impl Grown {
     /// Where the origin of the renderer's coordinates lies in the world, m.
     pub fn origin_m(&self) -> DVec3 {
         self.groomed.mesh.origin_m
+    }
+
+    /// The guard hairs, to be written to a file; `name` is what they are called there.
+    pub fn export<'a>(&'a self, name: &'a str) -> Export<'a> {
+        Export { strands: &self.guard.0, origin_m: self.origin_m(), metres_per_unit: self.metres_per_unit, name }
     }
 
     /// What the renderer needs.
@@ -122,7 +133,6 @@ impl Grown {
         let mesh = &self.groomed.mesh;
         let (low, high) = mesh.bounds_m();
         let hair_m = self.guard.1.longest_m().max(self.undercoat.longest_m());
-        let vfov_rad = 0.6_f32;
         let (azimuth, elevation) = (azimuth_deg.to_radians(), elevation_deg.clamp(-89.0, 89.0).to_radians());
         let (sin, cos) = libm::sincosf(elevation);
         let towards = Vec3::new(libm::sinf(azimuth) * cos, sin, libm::cosf(azimuth) * cos);
@@ -131,23 +141,27 @@ impl Grown {
         let forward = -towards;
         let right = forward.cross(Vec3::Y).normalize_or(Vec3::X);
         let up = right.cross(forward);
-        let half = libm::tanf(0.5 * vfov_rad);
+        let half = libm::tanf(0.5 * VFOV_DEG.to_radians() as f32);
         let aspect = size[0] as f32 / size[1] as f32;
         let back_m = mesh.positions_m.iter().fold(0.0_f32, |back, &p| {
             let q = p - target_m;
             let reach = ((q.dot(up).abs() + hair_m) / half).max((q.dot(right).abs() + hair_m) / (half * aspect));
             back.max(reach - q.dot(forward))
         });
-        Camera { eye_m: target_m + towards * (back_m * distance), target_m, up: Vec3::Y, vfov_rad }
+        let world = |p: Vec3| (mesh.origin_m + p.as_dvec3()).to_array();
+        Camera {
+            eye: world(target_m + towards * (back_m * distance)),
+            target: world(target_m),
+            up: [0.0, 1.0, 0.0],
+            vfov_deg: VFOV_DEG,
+        }
     }
 }
 
 /// A key light over the left shoulder of a camera, and a tenth of its light from everywhere.
 pub fn studio(camera: &Camera) -> Lighting {
-    let forward = (camera.target_m - camera.eye_m).normalize_or(Vec3::NEG_Z);
-    let right = forward.cross(camera.up).normalize_or(Vec3::X);
-    let up = right.cross(forward);
-    let to_light = (up * 0.8 - forward * 0.7 - right * 0.9).normalize();
+    let [right, up, back] = camera.axes().map(|axis| axis.as_vec3());
+    let to_light = (up * 0.8 + back * 0.7 - right * 0.9).normalize();
     let key = crate::shade::light::Directional { to_light, irradiance: Vec3::splat(2.2 * PI) };
     Lighting { key, fill: Vec::new(), ambient: Vec3::splat(0.6), fill_on_undercoat: false }
 }

@@ -114,7 +114,8 @@ impl View {
     }
 }
 
-fn read_camera(file: &Path) -> Result<Camera> {
+/// Reads a camera file.
+pub(super) fn read_camera(file: &Path) -> Result<Camera> {
     let text = std::fs::read_to_string(file)
         .map_err(|e| Error::input("the camera file cannot be read").with_file(file).with_found(e))?;
     Camera::from_json(&text).map_err(|e| e.with_file(file))

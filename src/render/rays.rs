@@ -1,6 +1,7 @@
 //! The three ways to look at hair: through a camera, at a tile, from given texels.
 
-use crate::math::Vec3;
+use super::view::View;
+use crate::math::{Vec2, Vec3};
 
 /// A half line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,28 +12,13 @@ pub struct Ray {
     pub direction: Vec3,
 }
 
-/// A pinhole camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Camera {
-    /// Position, m.
-    pub eye_m: Vec3,
-    /// A point in the middle of the picture, m.
-    pub target_m: Vec3,
-    /// Roughly upwards.
-    pub up: Vec3,
-    /// Vertical field of view, radians.
-    pub vfov_rad: f32,
-}
-
 /// The rays of a film, `supersampling²` per pixel, stratified.
 #[derive(Clone, Copy, Debug)]
 pub enum Rays<'a> {
     /// Through a camera.
     Perspective {
-        /// The camera.
-        camera: Camera,
-        /// Pixels per row and rows.
-        size: [usize; 2],
+        /// The camera, and how large its picture is.
+        view: View,
         /// Rays per pixel edge.
         supersampling: usize,
     },
@@ -63,7 +49,8 @@ impl Rays<'_> {
     /// Pixels per row and rows of the film.
     pub fn size(&self) -> [usize; 2] {
         match self {
-            Self::Perspective { size, .. } | Self::Tile { size, .. } | Self::Texels { size, .. } => *size,
+            Self::Perspective { view, .. } => view.size,
+            Self::Tile { size, .. } | Self::Texels { size, .. } => *size,
         }
     }
 
@@ -83,15 +70,9 @@ impl Rays<'_> {
             (at(x, sx), at(y, sy))
         };
         match *self {
-            Self::Perspective { camera, size, supersampling } => {
+            Self::Perspective { view, supersampling } => {
                 let (px, py) = within(supersampling);
-                let forward = (camera.target_m - camera.eye_m).normalize();
-                let right = forward.cross(camera.up).normalize();
-                let up = right.cross(forward);
-                let half = libm::tanf(0.5 * camera.vfov_rad);
-                let sx = (2.0 * px / size[0] as f32 - 1.0) * half * size[0] as f32 / size[1] as f32;
-                let sy = (1.0 - 2.0 * py / size[1] as f32) * half;
-                Ray { origin_m: camera.eye_m, direction: (forward + right * sx + up * sy).normalize() }
+                Ray { origin_m: view.eye_m, direction: view.direction(Vec2::new(px, py)).normalize() }
             }
             Self::Tile { edge_m, top_m, direction, size, supersampling } => {
                 let (px, py) = within(supersampling);

@@ -1,8 +1,8 @@
 //! A camera made ready to project: world to pixels and back.
 
-use super::rays::Camera;
+use crate::data::camera::Camera;
 use crate::error::{Error, Result};
-use crate::math::{Vec2, Vec3};
+use crate::math::{DVec3, Vec2, Vec3};
 
 /// Nothing nearer than this share of the eye's distance to the target is drawn.
 const NEAREST: f32 = 1e-4;
@@ -25,39 +25,28 @@ pub struct View {
 }
 
 impl View {
-    /// Of a camera, for a film of `size`, all pixels moved by `shift_px` (for supersampling).
+    /// Of a camera, for a film of `size`, all pixels moved by `shift_px` (for supersampling), in coordinates whose origin
+    /// lies at `origin_m` in the world.
     ///
     /// # Errors
     /// Names what keeps the camera from looking anywhere.
-    pub fn new(camera: &Camera, size: [usize; 2], shift_px: Vec2) -> Result<Self> {
-        let fault = |field: &str, found: String, expected: &str| {
-            Err(Error::usage("the camera does not look anywhere")
-                .with_field(field)
-                .with_found(found)
-                .with_expected(expected))
-        };
-        let towards = camera.target_m - camera.eye_m;
-        let forward = towards.normalize_or_zero();
-        let right = forward.cross(camera.up).normalize_or_zero();
-        if forward == Vec3::ZERO || !camera.eye_m.is_finite() {
-            return fault("target", camera.target_m.to_string(), "a point away from the eye");
-        }
-        if right == Vec3::ZERO {
-            return fault("up", camera.up.to_string(), "a direction across the line of sight");
-        }
-        if !(1e-3..3.1).contains(&camera.vfov_rad) {
-            return fault("vfov_deg", camera.vfov_rad.to_degrees().to_string(), "0.1 to 177");
-        }
+    pub fn new(camera: &Camera, origin_m: DVec3, size: [usize; 2], shift_px: Vec2) -> Result<Self> {
+        let camera = camera.checked()?;
         if size.iter().any(|&n| n == 0 || n > 1 << 15) {
-            return fault("size", format!("{} x {}", size[0], size[1]), "1 to 32768 pixels each way");
+            return Err(Error::usage("there is no such picture")
+                .with_field("size")
+                .with_found(format!("{} x {}", size[0], size[1]))
+                .with_expected("1 to 32768 pixels each way"));
         }
+        let [right, up, back] = camera.axes().map(|axis| axis.as_vec3());
         let half = Vec2::new(size[0] as f32, size[1] as f32) * 0.5;
+        let eye = DVec3::from(camera.eye);
         Ok(Self {
-            eye_m: camera.eye_m,
-            axes: [right, right.cross(forward), forward],
-            focal_px: half.y / libm::tanf(0.5 * camera.vfov_rad),
+            eye_m: (eye - origin_m).as_vec3(),
+            axes: [right, up, -back],
+            focal_px: half.y / libm::tanf(0.5 * camera.vfov_deg.to_radians() as f32),
             size,
-            near_m: NEAREST * towards.length(),
+            near_m: NEAREST * eye.distance(DVec3::from(camera.target)) as f32,
             centre_px: half - shift_px,
         })
     }

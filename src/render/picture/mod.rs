@@ -7,9 +7,9 @@ mod tile;
 use super::march::Stepping;
 use super::march::volume::{Resolution, Volume};
 use super::pelt::{Lighting, Pelt};
-use super::rays::Camera;
 use super::resolve::Blending;
 use super::view::View;
+use crate::data::camera::Camera;
 use crate::data::film::Film;
 use crate::error::Result;
 use crate::fur::undercoat::Undercoat;
@@ -107,13 +107,13 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
     let passes = settings.passes.max(1);
     let normals = pelt.skin.smooth_normals();
     let start = Instant::now();
-    let middle = View::new(camera, settings.size, Vec2::ZERO)?;
+    let middle = View::new(camera, pelt.skin.origin_m, settings.size, Vec2::ZERO)?;
     let subdivisions = subdivisions(pelt, &middle, &settings.resolution);
     let volume = Volume::new(pelt, &normals, lighting.key.to_light, settings.resolution, subdivisions);
     row(&mut picture, "shell", start, volume.as_ref().map_or(0, |v| v.shell().bytes()));
     for pass in 0..passes {
         let shift = if passes == 1 { Vec2::ZERO } else { sampling::r2(pass as u64, 1 << 63) - 0.5 };
-        let view = View::new(camera, settings.size, shift)?;
+        let view = View::new(camera, pelt.skin.origin_m, settings.size, shift)?;
         let film = Pass::new(pelt, lighting, &normals, volume.as_ref(), view, settings)?.run(&mut picture);
         if pass == 0 { picture.film = film } else { add(&mut picture.film, &film) }
     }
