@@ -107,6 +107,26 @@ fn json_of(arguments: &[&std::ffi::OsStr]) -> serde_json::Value {
 }
 
 #[test]
+fn an_atlas_says_that_it_is_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("atlas.glb");
+    let report = folder.path().join("report.json");
+    let mut args = vec!["bake".as_ref(), "sample:torus".as_ref(), "-o".as_ref(), output.as_os_str()];
+    args.extend(["--report".as_ref(), report.as_os_str()]);
+    // 64 texels instead of 16: charts need room.
+    let texels = |option: &&'static str| if *option == "16" { "64" } else { *option };
+    args.extend(crate::bake::SMALL.iter().map(texels).map(std::ffi::OsStr::new));
+    args.extend(["--parameterisation", "atlas"].map(std::ffi::OsStr::new));
+    furrier().args(&args).assert().success().stderr(predicate::str::contains("64² texels"));
+    let inspected = json_of(&["inspect".as_ref(), output.as_os_str()]);
+    assert_eq!(inspected["coat"]["tiles"][0]["sampled_on_skin"], true);
+    assert_eq!(inspected["coat"]["tiles"][0]["texture_size"], 64);
+    furrier().arg("inspect").arg(&output).assert().success().stdout(predicate::str::contains("atlas 0 (fox)"));
+    let report: serde_json::Value = serde_json::from_slice(&std::fs::read(&report).unwrap()).unwrap();
+    assert_eq!(report["error"]["coverage_by_tile"][0].as_array().unwrap().len(), 4);
+}
+
+#[test]
 fn what_was_baked_is_what_is_inspected() {
     let folder = tempfile::tempdir().unwrap();
     let output = folder.path().join("plane.glb");

@@ -1,7 +1,7 @@
 //! Coats made by hand: tiles of nearly upright hair deposited as the law needs them, on a plane and on a sphere. No step
 //! of the bake has a part in them.
 
-use furrier::data::coat::{FinEdge, FinTexture, ShellStack, Tile};
+use furrier::data::coat::{FinEdge, FinTexture, Sampled, ShellStack, Tile};
 use furrier::data::image::{Image8, srgb_from_linear, unorm8};
 use furrier::math::hash::Stream;
 use furrier::math::{Vec2, Vec3, Vec4};
@@ -98,6 +98,7 @@ pub fn tile(hairs: &[Hair], edge_m: f32, layers: u32, size: u32, seed: u64) -> T
     }
     Tile {
         preset: "made".into(),
+        sampled: Sampled::Square,
         edge_m,
         height_m,
         shells: shells(voxels, size, layers, slab_m, texel_m),

@@ -1,7 +1,7 @@
 //! Coats made up for tests of files: every field has its own numbers, so that a mix-up shows.
 
 use furrier::asset::Asset;
-use furrier::data::coat::{Coat, CoatPrimitive, FinEdge, FinTexture, ShellStack, Tile};
+use furrier::data::coat::{Coat, CoatPrimitive, FinEdge, FinTexture, Sampled, ShellStack, Tile};
 use furrier::data::image::Image8;
 use furrier::math::hash::Stream;
 use furrier::math::{Vec2, Vec4};
@@ -34,6 +34,7 @@ pub fn tile(seed: u64) -> Tile {
     let (fin_albedo, fin_tangent) = (fin(), fin());
     Tile {
         preset: format!("made {seed}"),
+        sampled: if seed % 2 == 0 { Sampled::Skin } else { Sampled::Square },
         edge_m: 0.008,
         height_m: 0.012,
         shells: ShellStack {

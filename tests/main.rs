@@ -8,6 +8,7 @@
 
 mod accuracy;
 mod architecture;
+mod atlas;
 mod bake;
 mod cli;
 mod coat_file;

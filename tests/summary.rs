@@ -1,7 +1,7 @@
 //! `inspect`'s numbers against counts made by hand.
 
 use furrier::coat::summary::summarise;
-use furrier::data::coat::{Coat, CoatPrimitive, FinEdge, FinTexture, ShellStack, Tile};
+use furrier::data::coat::{Coat, CoatPrimitive, FinEdge, FinTexture, Sampled, ShellStack, Tile};
 use furrier::data::image::Image8;
 use furrier::math::{Vec2, Vec3, Vec4};
 
@@ -31,7 +31,7 @@ fn coat() -> Coat {
         fins: vec![FinEdge { ends: [0, 2], opposite: [1, 3], u: [0.0, 1.0], thickness: 1.0 }],
         ..CoatPrimitive::default()
     };
-    let tile = Tile { preset: "made".into(), edge_m: 0.01, height_m: 0.02, shells, fin };
+    let tile = Tile { preset: "made".into(), sampled: Sampled::Square, edge_m: 0.01, height_m: 0.02, shells, fin };
     Coat { metres_per_unit: 1.0, tiles: vec![tile], primitives: vec![worn] }
 }
 

@@ -60,7 +60,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
     out.uv = vec2(own.u, own.v);
     out.offset_m = own.offset_m;
     out.normal = own.normal;
-    out.tint = own.tint;
+    out.tint = mix(vec4(1.0), own.tint, tile.tinted);
     out.x_axis = (edge_b * uv_c.y - edge_c * uv_b.y) * scale;
     out.y_axis = (edge_c * uv_b.x - edge_b * uv_c.x) * scale;
     let turn_b = b.normal - a.normal;

@@ -16,6 +16,8 @@ struct Tile {
     // Layers, the skin counted.
     layers: u32,
     mips: u32,
+    // 1 where the coat's tint gives shells colour and density, 0 where the texels hold them.
+    tinted: f32,
 }
 
 struct Mip {

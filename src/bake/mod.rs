@@ -1,33 +1,38 @@
 //! Floor 7: the pipeline, from an asset to the same asset with a coat.
 
+mod atlas;
 pub mod picture;
 mod skin;
 pub mod units;
 
 use crate::asset::coat::{Fallback, refuse_second, write_coat};
-use crate::asset::{self, Part};
+use crate::asset::{self, Asset, Part};
 use crate::coat::judge::{Effort, Row, coverage_table};
 use crate::coat::tile::{TileHair, TileRecipe, bake as bake_tile, leaning};
 use crate::coat::wear::wear;
-use crate::data::coat::{Coat, Tile};
-use crate::data::patches::Stats;
+use crate::data::coat::{Coat, CoatPrimitive, Tile};
+use crate::data::patches::{Patches, Stats};
 use crate::error::{Error, Result};
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::patch::{Parameterisation, parameterise};
 use crate::math::Vec3;
 use crate::math::hash::combine;
 use crate::preset::Preset;
+use skin::Groomed;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use units::Units;
+use units::{Scale, Units};
 
 /// How to choose texture coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Lapped patches.
     Lapped,
-    /// Unique charts.
-    Atlas,
+    /// Charts with texels of their own, hair sampled on the skin.
+    Atlas {
+        /// Texels along the edge of the square that holds them; none for four times the preset's tile.
+        texels: Option<u32>,
+    },
     /// The asset's own set.
     Uv(usize),
 }
@@ -140,38 +145,38 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
         timings: Vec::new(),
     };
     // One tile per preset; primitives with the same preset share it.
-    let mut tiles: Vec<&Preset> = Vec::new();
+    let mut tiles: Vec<(&Preset, Vec<usize>)> = Vec::new();
     for &index in &chosen {
-        let part = &asset.parts[index];
-        let own = request.presets.iter().find(|(material, _)| *material == part.material_name);
-        let preset = own.map_or(&request.preset, |(_, preset)| preset);
-        let tile = match tiles.iter().position(|&p| p == preset) {
-            Some(tile) => tile,
-            None => {
-                let (tile, rows) = tile_of(preset, scale.diagonal_m as f32, request, &mut steps);
-                warnings.extend(units::length_warning(tile.height_m, scale.diagonal_m));
-                coat.tiles.push(tile);
-                baked.accuracy.extend(rows);
-                tiles.push(preset);
-                tiles.len() - 1
-            }
+        let preset = preset_of(request, &asset.parts[index]);
+        match tiles.iter_mut().find(|(of_tile, _)| *of_tile == preset) {
+            Some((_, parts)) => parts.push(index),
+            None => tiles.push((preset, vec![index])),
+        }
+    }
+    let mut worn: Vec<(usize, CoatPrimitive, Stats)> = Vec::new();
+    for (tile, (preset, parts)) in tiles.iter().enumerate() {
+        let task = Task { asset: &asset, preset, parts, request, scale: &scale };
+        let dressed = match request.method {
+            Method::Atlas { texels } => atlas::dress(&task, texels, &mut steps)?,
+            Method::Lapped => dress(&task, |seed| Parameterisation::Lapped { seed }, &mut steps)?,
+            Method::Uv(set) => dress(&task, |_| Parameterisation::Uv { set }, &mut steps)?,
         };
-        let groomed = steps.run("groom", || skin::groom(&asset, part, preset, scale.metres_per_unit))?;
-        warnings.extend(groomed.notes);
-        let textures = &coat.tiles[tile];
-        let seed = combine(request.seed, index as u64);
-        let method = method_of(request.method, preset, seed);
-        let patches =
-            steps.run("patches", || parameterise(&groomed.mesh, &groomed.fields.direction, textures.edge_m, method))?;
-        warnings.extend(patches.stats.warnings.iter().cloned());
-        let mut worn = steps.run("wear", || {
-            wear(&groomed.mesh, &groomed.fields, &patches, textures, seed, |v, offset_m| {
-                part.local_offset(v, offset_m, scale.metres_per_unit)
-            })
-        });
-        (worn.mesh, worn.primitive, worn.tile) = (part.mesh, part.primitive, tile);
-        coat.primitives.push(worn);
-        baked.patches.push(patches.stats);
+        warnings.extend(units::length_warning(dressed.tile.height_m, scale.diagonal_m));
+        notes.extend(dressed.notes);
+        warnings.extend(dressed.warnings);
+        baked.accuracy.extend(dressed.accuracy);
+        coat.tiles.push(dressed.tile);
+        worn.extend(
+            parts
+                .iter()
+                .zip(dressed.worn)
+                .map(|(&index, (primitive, stats))| (index, CoatPrimitive { tile, ..primitive }, stats)),
+        );
+    }
+    worn.sort_by_key(|(index, ..)| *index);
+    for (_, primitive, stats) in worn {
+        coat.primitives.push(primitive);
+        baked.patches.push(stats);
     }
     notes.extend(steps.run("write", || write_coat(&asset, &coat, request.fallback, &request.out))?);
     baked.coat = coat;
@@ -180,34 +185,89 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
     Ok(baked)
 }
 
-fn method_of(method: Method, preset: &Preset, seed: u64) -> Parameterisation {
-    match method {
-        Method::Lapped => Parameterisation::Lapped { seed },
-        Method::Uv(set) => Parameterisation::Uv { set },
-        // Charts keep the texels free that the second mip needs; below it neighbouring hair looks alike anyway.
-        Method::Atlas => Parameterisation::Atlas { texels_per_tile: preset.shells.texture_size, padding_texels: 4 },
+/// Parts that one tile is made for.
+struct Task<'a> {
+    asset: &'a Asset,
+    preset: &'a Preset,
+    /// Their indices.
+    parts: &'a [usize],
+    request: &'a Request,
+    scale: &'a Scale,
+}
+
+/// A tile and what wears it.
+struct Dressed {
+    tile: Tile,
+    /// One per part of the task.
+    worn: Vec<(CoatPrimitive, Stats)>,
+    accuracy: Option<Vec<Row>>,
+    notes: Vec<String>,
+    warnings: Vec<String>,
+}
+
+impl Task<'_> {
+    /// Guard hair and undercoat.
+    fn fibres(&self) -> [Fibre; 2] {
+        let (preset, diagonal_m) = (self.preset, self.scale.diagonal_m as f32);
+        [
+            Fibre::guard(&preset.guard, &preset.colour, diagonal_m),
+            Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m),
+        ]
+    }
+
+    fn recipe(&self) -> TileRecipe {
+        TileRecipe {
+            preset: self.preset.name.clone(),
+            shells: self.preset.shells,
+            fins: self.preset.fins,
+            skin: Vec3::from(self.preset.colour.skin),
+            lean_deg: self.preset.groom.lean_deg,
+        }
+    }
+
+    /// Decides what is random on a part.
+    fn seed(&self, part: usize) -> u64 {
+        combine(self.request.seed, part as u64)
+    }
+
+    /// What a part wears.
+    fn wear(&self, part: usize, groomed: &Groomed, patches: &Patches, tile: &Tile) -> CoatPrimitive {
+        let at = &self.asset.parts[part];
+        let local = |v, offset_m| at.local_offset(v, offset_m, self.scale.metres_per_unit);
+        let worn = wear(&groomed.mesh, &groomed.fields, patches, tile, self.seed(part), local);
+        CoatPrimitive { mesh: at.mesh, primitive: at.primitive, ..worn }
     }
 }
 
-/// Grows and bakes a preset's tile for a mesh of this bounding diagonal.
-fn tile_of(preset: &Preset, diagonal_m: f32, request: &Request, steps: &mut Steps<'_>) -> (Tile, Option<Vec<Row>>) {
-    let guard = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
-    let undercoat = Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m);
-    let recipe = TileRecipe {
-        preset: preset.name.clone(),
-        shells: preset.shells,
-        fins: preset.fins,
-        skin: Vec3::from(preset.colour.skin),
-        lean_deg: preset.groom.lean_deg,
-    };
-    let hair = steps.run("grow", || TileHair::grow(&guard, &undercoat, preset.shells.tile_mm * 1e-3, request.seed));
+/// Grows and bakes a tile, and puts it on each part over patches of its own.
+fn dress(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: &mut Steps<'_>) -> Result<Dressed> {
+    let ([guard, undercoat], recipe, request) = (task.fibres(), task.recipe(), task.request);
+    let edge_m = recipe.shells.tile_mm * 1e-3;
+    let hair = steps.run("grow", || TileHair::grow(&guard, &undercoat, edge_m, request.seed));
     let tile = steps.run("tile", || bake_tile(&hair, &recipe));
     let judge = || {
         let effort = Effort { pixels: 32, supersampling: 2 };
         coverage_table(&hair, &tile, leaning(recipe.lean_deg), effort)
     };
-    let rows = request.judge.then(|| steps.run("judge", judge));
-    (tile, rows)
+    let accuracy = request.judge.then(|| steps.run("judge", judge));
+    let mut dressed = Dressed { tile, worn: Vec::new(), accuracy, notes: Vec::new(), warnings: Vec::new() };
+    for &part in task.parts {
+        let groomed = steps.run("groom", || {
+            skin::groom(task.asset, &task.asset.parts[part], task.preset, task.scale.metres_per_unit)
+        })?;
+        let direction = &groomed.fields.direction;
+        let patches =
+            steps.run("patches", || parameterise(&groomed.mesh, direction, edge_m, method(task.seed(part))))?;
+        dressed.warnings.extend(groomed.notes.iter().chain(&patches.stats.warnings).cloned());
+        let worn = steps.run("wear", || task.wear(part, &groomed, &patches, &dressed.tile));
+        dressed.worn.push((worn, patches.stats));
+    }
+    Ok(dressed)
+}
+
+fn preset_of<'a>(request: &'a Request, part: &Part) -> &'a Preset {
+    let own = request.presets.iter().find(|(material, _)| *material == part.material_name);
+    own.map_or(&request.preset, |(_, preset)| preset)
 }
 
 fn names<'a>(parts: impl Iterator<Item = &'a Part>) -> Vec<String> {

@@ -56,7 +56,8 @@ pub struct Bake {
     /// Layers, the opaque skin included: overrides every preset's shells.layers
     #[arg(long, value_name = "N")]
     layers: Option<u32>,
-    /// Texels along a tile's edge: overrides every preset's shells.texture_size
+    /// Texels along a tile's edge: overrides every preset's shells.texture_size. With `--parameterisation atlas`, those
+    /// along the edge of the whole atlas [default there: four times the preset's]
     #[arg(long, value_name = "N")]
     texture_size: Option<u32>,
     /// Where random numbers start; the same seed gives the same bytes
@@ -198,7 +199,7 @@ impl Bake {
             units: self.units.units(),
             method: match self.parameterisation {
                 Layout::Lapped => Method::Lapped,
-                Layout::Atlas => Method::Atlas,
+                Layout::Atlas => Method::Atlas { texels: self.texture_size },
                 Layout::Uv => Method::Uv(self.uv_set.unwrap_or(0)),
             },
             seed: self.seed,

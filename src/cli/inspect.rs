@@ -59,7 +59,8 @@ fn print(inspection: &Inspection, out: &mut dyn Write) -> io::Result<()> {
     for (i, tile) in coat.tiles.iter().enumerate() {
         writeln!(
             out,
-            "  tile {i} ({}): {:.1} mm wide, {:.1} mm high, {} layers of {}², {} mips, fins {}×{}, {}",
+            "  {} {i} ({}): {:.1} mm wide, {:.1} mm high, {} layers of {}², {} mips, fins {}×{}, {}",
+            if tile.sampled_on_skin { "atlas" } else { "tile" },
             tile.preset,
             tile.edge_mm,
             tile.height_mm,

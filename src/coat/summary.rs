@@ -1,6 +1,6 @@
 //! What a coat holds and costs, in numbers.
 
-use crate::data::coat::{Coat, CoatPrimitive, Tile};
+use crate::data::coat::{Coat, CoatPrimitive, Sampled, Tile};
 use crate::data::image::Image8;
 use serde::Serialize;
 
@@ -33,6 +33,8 @@ pub struct Summary {
 pub struct TileSummary {
     /// Preset it was grown from.
     pub preset: String,
+    /// Whether its hair was sampled on the skin: an atlas of unique texels instead of a square that repeats.
+    pub sampled_on_skin: bool,
     /// Edge, mm.
     pub edge_mm: f32,
     /// Height of the stack, mm.
@@ -94,6 +96,7 @@ fn tile(tile: &Tile) -> TileSummary {
     let gap_m = f64::from(tile.height_m) / f64::from(shells.layers.max(2) - 1);
     TileSummary {
         preset: tile.preset.clone(),
+        sampled_on_skin: tile.sampled == Sampled::Skin,
         edge_mm: tile.edge_m * 1e3,
         height_mm: tile.height_m * 1e3,
         layers: shells.layers,

@@ -1,10 +1,10 @@
 //! A tile from hair to textures.
 
 use super::fins::{FinParameters, texture};
-use super::shells::deposit::{Voxels, mean_slopes};
+use super::shells::deposit::{Layout, Voxels, mean_slopes};
 use super::shells::encode::{Raw, encode};
 use super::shells::{ShellParameters, ends, gains, shadow};
-use crate::data::coat::Tile;
+use crate::data::coat::{Sampled, Tile};
 use crate::data::strands::Strands;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::grow;
@@ -90,12 +90,12 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
     // The textures, the fin and the truth that gains are fitted to need nothing of each other.
     let shells = || {
         let slopes = slopes(hair, slabs);
-        let empty = Voxels::new(size, slabs, hair.edge_m, hair.height_m);
+        let empty = Voxels::new(Layout::tile(size, slabs, hair.edge_m, hair.height_m));
         let guard = empty.deposited(&hair.guard, &slopes, 0.0);
         let mut kappa = ends::guard_ends(&hair.guard, &guard, &slopes);
         let mut voxels = empty.deposited(&hair.undercoat, &slopes, undercoat_width_m(hair));
         voxels.add(&guard);
-        ends::add_undercoat_ends(&hair.undercoat, &mut kappa, &voxels);
+        ends::add_undercoat_ends(&hair.undercoat, &mut kappa, &voxels.layout);
         let (transmittance, skin_transmittance) = shadow::transmittance(&voxels, &kappa);
         let shells = encode(&Raw {
             voxels: &voxels,
@@ -104,6 +104,7 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
             skin_transmittance: &skin_transmittance,
             skin: recipe.skin,
             slopes: &slopes,
+            skin_share: &[],
         });
         (shells, slab_means(&transmittance, slabs))
     };
@@ -115,6 +116,7 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
     let ((shells, slab_transmittance), (truth, fin)) = rayon::join(shells, || rayon::join(truth, fin));
     let mut tile = Tile {
         preset: recipe.preset.clone(),
+        sampled: Sampled::Square,
         edge_m: hair.edge_m,
         height_m: hair.height_m,
         shells,
@@ -125,7 +127,7 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
 }
 
 /// Slope of the mean guard hair per slab; of the undercoat where there is no guard hair.
-fn slopes(hair: &TileHair, slabs: usize) -> Vec<crate::math::Vec2> {
+pub(super) fn slopes(hair: &TileHair, slabs: usize) -> Vec<crate::math::Vec2> {
     let strands = if hair.guard.is_empty() { &hair.undercoat } else { &hair.guard };
     mean_slopes(strands, slabs, hair.height_m)
 }
@@ -136,7 +138,7 @@ fn undercoat_width_m(hair: &TileHair) -> f32 {
 }
 
 /// Mean of the values of each slab.
-fn slab_means(values: &[f32], slabs: usize) -> Vec<f32> {
+pub(super) fn slab_means(values: &[f32], slabs: usize) -> Vec<f32> {
     let per_slab = values.len() / slabs;
     values.chunks(per_slab).map(|slab| slab.iter().sum::<f32>() / per_slab as f32).collect()
 }

@@ -10,6 +10,11 @@ use crate::math::Vec3;
 /// Shortest hair over the stack's height: below it a shell would lie in the skin and fight it for depth.
 const SHORTEST: f32 = 1e-3;
 
+/// The coat's offset at a skin vertex over the stack's height: the lean, as long as the hair there is over the preset's.
+pub fn offset_over_height(fields: &Fields, v: usize) -> Vec3 {
+    fields.lean[v] * fields.length[v].max(SHORTEST)
+}
+
 /// What a primitive wears, from its mesh, its fields and its patches. `local_offset` takes a skin vertex and a world
 /// offset in metres to the base primitive's own space.
 pub fn wear(

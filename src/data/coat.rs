@@ -17,11 +17,24 @@ pub struct Coat {
     pub primitives: Vec<CoatPrimitive>,
 }
 
-/// A toroidal piece of hair with its mean lean removed.
+/// Where the hair of a tile grew.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sampled {
+    /// On a flat toroidal square: textures repeat, and a coat's tint gives them colour and density.
+    #[default]
+    Square,
+    /// On the skin itself: each place of the skin has texels of its own, which hold its colour and density; the coat's
+    /// tint is for fins alone. Textures end at their borders.
+    Skin,
+}
+
+/// A piece of hair with its mean lean removed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tile {
     /// Name of the preset it was grown from.
     pub preset: String,
+    /// Where its hair grew.
+    pub sampled: Sampled,
     /// Edge length that one unit of coat UV stands for, m in the world the coat was baked for.
     pub edge_m: f32,
     /// Height of the stack, m: the length of the longest hair's vertical reach at offset scale 1.

@@ -19,6 +19,19 @@ pub struct Patches {
     pub stats: Stats,
 }
 
+/// A square of texels that holds charts, each in a rectangle of its own.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Square {
+    /// Texels along its edge.
+    pub texels: u32,
+    /// Length that the edge stands for, m.
+    pub edge_m: f32,
+    /// Texels around each chart that are no other's.
+    pub padding: u32,
+    /// Per set of patches and chart: first column and row, columns and rows of its rectangle, padding included.
+    pub charts: Vec<Vec<[u32; 4]>>,
+}
+
 /// Mean and the 5th and 95th percentile, weighted by skin area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {

@@ -4,7 +4,7 @@
 //! unit tangents and O is the coat's offset over the stack's height. Hair keeps its diameter under that map, so the
 //! medium changes with it (`docs/steps/shells.md`).
 
-use crate::data::coat::{GAIN_ANGLES_DEG, Tile};
+use crate::data::coat::{GAIN_ANGLES_DEG, Sampled, Tile};
 use crate::data::image::Image8;
 use crate::math::{Mat3, Vec2, Vec3};
 
@@ -108,13 +108,18 @@ impl<'a> Stack<'a> {
 
     /// What a shader fetches for slab `layer` (1 … layers − 1) where the view ray passes the tile's plane z = 0 at `uv`.
     pub fn fetch(&self, layer: usize, uv: Vec2, view: &View) -> Texel {
-        let slab_m = self.slab_m();
         let d = view.in_tile();
         let slope = Vec2::new(d.x, d.y) / d.z;
-        let middle_m = (layer as f32 - 0.5) * slab_m;
-        let centre = uv + slope * middle_m / self.tile.edge_m;
-        let run = (slope - self.tile.shells.slopes[layer]) * slab_m / self.tile.edge_m;
-        self.fetch_along(layer, centre, run, view.pixel)
+        let middle_m = (layer as f32 - 0.5) * self.slab_m();
+        self.fetch_middle(layer, uv + slope * middle_m / self.tile.edge_m, view)
+    }
+
+    /// What a shader fetches for slab `layer` where the view ray passes the slab's middle at `uv`.
+    pub fn fetch_middle(&self, layer: usize, uv: Vec2, view: &View) -> Texel {
+        let d = view.in_tile();
+        let slope = Vec2::new(d.x, d.y) / d.z;
+        let run = (slope - self.tile.shells.slopes[layer]) * self.slab_m() / self.tile.edge_m;
+        self.fetch_along(layer, uv, run, view.pixel)
     }
 
     /// An anisotropic fetch: the pixel's footprint widened by `run`, both in tile edges.
@@ -141,13 +146,18 @@ impl<'a> Stack<'a> {
         let p = uv * size as f32 - 0.5;
         let (x, y) = (p.x.floor(), p.y.floor());
         let (fx, fy) = (p.x - x, p.y - y);
-        let mask = size as i64 - 1;
+        let last = size as i64 - 1;
+        // A tile repeats; what was sampled on the skin ends at its borders.
+        let cell = |i: i64| match self.tile.sampled {
+            Sampled::Square => i & last,
+            Sampled::Skin => i.clamp(0, last),
+        };
         let texels = &self.texels[mip][layer];
         let mut sum = Texel::default();
         for (dx, dy, weight) in
             [(0, 0, (1.0 - fx) * (1.0 - fy)), (1, 0, fx * (1.0 - fy)), (0, 1, (1.0 - fx) * fy), (1, 1, fx * fy)]
         {
-            let (ix, iy) = ((x as i64 + dx) & mask, (y as i64 + dy) & mask);
+            let (ix, iy) = (cell(x as i64 + dx), cell(y as i64 + dy));
             sum.add(&texels[iy as usize * size + ix as usize], weight);
         }
         sum

@@ -3,7 +3,7 @@
 use crate::asset::Asset;
 use crate::asset::part::Part;
 use crate::asset::pose::{Pose, Posed};
-use crate::data::coat::{Coat, CoatPrimitive};
+use crate::data::coat::{Coat, CoatPrimitive, Sampled, Tile};
 use crate::data::image::Image8;
 use crate::error::Result;
 use crate::math::{Vec2, Vec3};
@@ -38,7 +38,7 @@ pub fn scene<'a>(asset: &'a Asset, coat: &'a Coat, textures: &'a Textures, pose:
         for &node in &part.nodes {
             let posed = part.posed(asset, pose, node, coat.metres_per_unit);
             for worn in &worn {
-                scene.skins.push(furred_skin(part, &posed, worn, textures));
+                scene.skins.push(furred_skin(part, &posed, worn, &coat.tiles[worn.tile], textures));
                 scene.furs.push(fur(&posed, worn));
             }
             scene.skins.push(bare_skin(part, &posed, &worn, textures));
@@ -76,7 +76,7 @@ fn fur<'a>(posed: &Posed, worn: &'a CoatPrimitive) -> Fur<'a> {
 }
 
 /// The skin under a coat, on the coat's vertices, so that it knows how much light the hair lets through.
-fn furred_skin<'a>(part: &Part, posed: &Posed, worn: &CoatPrimitive, textures: &'a Textures) -> Skin<'a> {
+fn furred_skin<'a>(part: &Part, posed: &Posed, worn: &CoatPrimitive, tile: &Tile, textures: &'a Textures) -> Skin<'a> {
     let whole = surface(part, posed, textures);
     let at = |list: &[Vec3]| worn.base_vertex.iter().map(|&v| list[v as usize]).collect();
     Skin {
@@ -90,7 +90,11 @@ fn furred_skin<'a>(part: &Part, posed: &Posed, worn: &CoatPrimitive, textures: &
             .tint
             .iter()
             .zip(&worn.offset)
-            .map(|(t, o)| if *o == Vec3::ZERO { 0.0 } else { t.w })
+            .map(|(t, o)| match tile.sampled {
+                _ if *o == Vec3::ZERO => 0.0,
+                Sampled::Square => t.w,
+                Sampled::Skin => 1.0,
+            })
             .collect(),
         triangles: worn.triangles.clone(),
         ..whole

@@ -9,7 +9,7 @@ use crate::asset::encode::Use;
 use crate::asset::json::At;
 use crate::asset::pose::turn;
 use crate::asset::{Asset, Part};
-use crate::data::coat::{Coat, CoatPrimitive};
+use crate::data::coat::{Coat, CoatPrimitive, Sampled};
 use crate::error::Result;
 use crate::math::{Vec3, Vec4};
 use serde_json::{Value, json};
@@ -35,7 +35,8 @@ pub fn add(document: &mut Document, asset: &Asset, coat: &Coat, count: u32) -> R
         let mut stacks = Vec::new();
         for primitive in &worn {
             let part = part_of(asset, primitive)?;
-            stacks.push(stack(document, asset, part, primitive, &materials[primitive.tile])?);
+            let tinted = coat.tiles[primitive.tile].sampled == Sampled::Square;
+            stacks.push(stack(document, asset, part, primitive, &materials[primitive.tile], tinted)?);
         }
         let most = stacks.iter().map(Vec::len).max().unwrap_or(0);
         let primitives: Vec<Value> =
@@ -88,13 +89,15 @@ fn materials(document: &mut Document, coat: &Coat, count: u32) -> Result<Vec<Vec
     Ok(all)
 }
 
-/// The shells of one coat primitive as glTF primitives, inner to outer.
+/// The shells of one coat primitive as glTF primitives, inner to outer; `tinted` where their colours are still to be
+/// multiplied by the coat's.
 fn stack(
     document: &mut Document,
     asset: &Asset,
     part: &Part,
     worn: &CoatPrimitive,
     materials: &[usize],
+    tinted: bool,
 ) -> Result<Vec<Value>> {
     let (n, shells) = (worn.base_vertex.len(), materials.len());
     let vertices = || (0..shells).flat_map(|shell| (0..n).map(move |v| ((shell as f32 + 0.5) / shells as f32, v)));
@@ -107,7 +110,7 @@ fn stack(
         "NORMAL": document.push_vec3(&normals, Use::Vertices),
         "TEXCOORD_0": document.push_vec2(&uvs, Use::Vertices),
     });
-    if worn.tint.iter().any(|tint| *tint != Vec4::ONE) {
+    if tinted && worn.tint.iter().any(|tint| *tint != Vec4::ONE) {
         let tints: Vec<Vec4> = vertices().map(|(_, v)| worn.tint[v].clamp(Vec4::ZERO, Vec4::ONE)).collect();
         attributes["COLOR_0"] = json!(document.push_vec4(&tints, Use::Vertices));
     }

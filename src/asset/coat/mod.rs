@@ -13,12 +13,18 @@ use write::set_extension;
 pub use write::{dress, refuse_second, write_coat};
 
 use super::json::At;
+use crate::data::coat::{Coat, Sampled};
 use serde_json::json;
 
 /// Name of the extension.
 pub const NAME: &str = "FURRIER_mesh_fur";
-/// Version of the extension that is written, and the only one that is read.
-pub const VERSION: u64 = 1;
+/// Newest version of the extension; all up to it are read.
+pub const VERSION: u64 = 2;
+
+/// The oldest version of the extension that can hold `coat`: 2 where a tile was sampled on the skin.
+pub fn version_of(coat: &Coat) -> u64 {
+    if coat.tiles.iter().any(|tile| tile.sampled == Sampled::Skin) { 2 } else { 1 }
+}
 
 /// Whether a mesh is the fallback of another's coat.
 pub(super) fn is_fallback(mesh: &At<'_>) -> bool {

@@ -34,8 +34,9 @@ pub fn coat_of(asset: &Asset) -> Result<Coat> {
             .with_hint("make one with `furrier bake`; tools that rewrite glTF may have dropped it"));
     };
     let version = extension.need("version")?;
-    if version.size()? as u64 != VERSION {
-        return Err(version.fault(&VERSION.to_string()).with_hint("bake the asset again with this version"));
+    if !(1..=VERSION).contains(&(version.size()? as u64)) {
+        let expected = format!("1 to {VERSION}");
+        return Err(version.fault(&expected).with_hint("bake the asset again with this version"));
     }
     let metres = extension.need("metresPerUnit")?;
     let metres_per_unit = metres.number()?;

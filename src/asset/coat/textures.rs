@@ -4,7 +4,7 @@ use crate::asset::Document;
 use crate::asset::encode::numbers;
 use crate::asset::json::At;
 use crate::asset::ktx2::{self, Format};
-use crate::data::coat::{FinTexture, GAIN_ANGLES_DEG, ShellStack, Tile};
+use crate::data::coat::{FinTexture, GAIN_ANGLES_DEG, Sampled, ShellStack, Tile};
 use crate::data::image::Image8;
 use crate::error::Result;
 use crate::math::Vec2;
@@ -27,7 +27,7 @@ pub fn write(document: &mut Document, tile: &Tile) -> Result<Value> {
         Ok(document.push_view(&ktx2::encode(&levels, format, false)?, None))
     };
     let (fin_albedo, fin_tangent) = (single(&fin.albedo, Format::Rgba8Srgb)?, single(&fin.tangent, Format::Rgba8)?);
-    Ok(json!({
+    let mut value = json!({
         "preset": tile.preset,
         "edge": f64::from(tile.edge_m),
         "height": f64::from(tile.height_m),
@@ -49,7 +49,11 @@ pub fn write(document: &mut Document, tile: &Tile) -> Result<Value> {
             "albedo": fin_albedo,
             "tangent": fin_tangent,
         },
-    }))
+    });
+    if tile.sampled == Sampled::Skin {
+        value["sampled"] = json!("skin");
+    }
+    Ok(value)
 }
 
 /// Reads a tile back.
@@ -102,8 +106,14 @@ pub fn read(document: &Document, at: &At<'_>) -> Result<Tile> {
     {
         return Err(shells.need("gains")?.fault("one row per mip, one slope per layer, and at least 2 layers"));
     }
+    let sampled = match at.get("sampled") {
+        None => Sampled::Square,
+        Some(sampled) if sampled.value == &json!("skin") => Sampled::Skin,
+        Some(sampled) => return Err(sampled.fault("\"skin\", or nothing for a tile that repeats")),
+    };
     Ok(Tile {
         preset: at.need("preset")?.text()?.to_owned(),
+        sampled,
         edge_m: float(at, "edge")?,
         height_m: float(at, "height")?,
         shells: ShellStack {

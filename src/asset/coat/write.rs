@@ -1,7 +1,7 @@
 //! A coat into a document, and the document into files.
 
 use super::fallback::{self, Fallback};
-use super::{NAME, VERSION, textures};
+use super::{NAME, textures, version_of};
 use crate::asset::document::Document;
 use crate::asset::encode::{Use, numbers};
 use crate::asset::image::media_type;
@@ -138,12 +138,13 @@ pub fn dress(asset: &Asset, coat: &Coat, fallback: Fallback) -> Result<Document>
             json!({"preset": tile.preset, "edge": edges[0], "height": edges[1], "layers": tile.shells.layers})
         })
         .collect();
+    let version = version_of(coat);
     set_extension(
         &mut document.json,
-        json!({"version": VERSION, "metresPerUnit": coat.metres_per_unit, "tiles": tiles}),
+        json!({"version": version, "metresPerUnit": coat.metres_per_unit, "tiles": tiles}),
     );
     let extras =
-        json!({"version": VERSION, "metresPerUnit": coat.metres_per_unit, "tiles": essentials, "primitives": mirror});
+        json!({"version": version, "metresPerUnit": coat.metres_per_unit, "tiles": essentials, "primitives": mirror});
     if let Some(root) = document.json.as_object_mut() {
         let used = root.entry("extensionsUsed").or_insert_with(|| json!([]));
         if let Some(used) = used.as_array_mut() {

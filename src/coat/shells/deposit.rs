@@ -8,17 +8,49 @@ use std::ops::Range;
 /// Batches that strands are deposited in.
 const BATCHES: usize = 4;
 
-/// The slabs of a tile, `[slab][y][x]`, slab 0 at the skin.
-#[derive(Clone, Debug)]
-pub struct Voxels {
-    /// Texels along the edge.
-    pub size: usize,
+/// How voxels lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layout {
+    /// Texels along x and y.
+    pub size: [usize; 2],
+    /// Edge of a texel, m.
+    pub texel_m: f32,
+    /// Whether what leaves on one side comes in on the other, as on a tile; else it is gone.
+    pub toroidal: bool,
     /// Slabs.
     pub slabs: usize,
-    /// Edge of the tile, m.
-    pub edge_m: f32,
     /// Height of one slab, m.
     pub slab_m: f32,
+}
+
+impl Layout {
+    /// A tile with `size` texels along its edge, its stack `height_m` high.
+    pub fn tile(size: usize, slabs: usize, edge_m: f32, height_m: f32) -> Self {
+        let (texel_m, slab_m) = (edge_m / size as f32, height_m / slabs as f32);
+        Self { size: [size, size], texel_m, toroidal: true, slabs, slab_m }
+    }
+
+    /// Texels of one slab.
+    pub fn texels(&self) -> usize {
+        self.size[0] * self.size[1]
+    }
+
+    /// The texel at column `x` and row `y`, if there is one.
+    pub fn texel(&self, x: i64, y: i64) -> Option<usize> {
+        let (width, height) = (self.size[0] as i64, self.size[1] as i64);
+        let at = |x: i64, y: i64| (y * width + x) as usize;
+        if self.toroidal {
+            return Some(at(x.rem_euclid(width), y.rem_euclid(height)));
+        }
+        ((0..width).contains(&x) && (0..height).contains(&y)).then(|| at(x, y))
+    }
+}
+
+/// Slabs of hair, `[slab][y][x]`, slab 0 at the skin.
+#[derive(Clone, Debug)]
+pub struct Voxels {
+    /// How they lie.
+    pub layout: Layout,
     /// A = Σ ℓ D / V, 1/m.
     pub extinction: Vec<f32>,
     /// Am = Σ ℓ D t / V, 1/m.
@@ -29,17 +61,9 @@ pub struct Voxels {
 
 impl Voxels {
     /// Empty voxels.
-    pub fn new(size: usize, slabs: usize, edge_m: f32, height_m: f32) -> Self {
-        let n = size * size * slabs;
-        Self {
-            size,
-            slabs,
-            edge_m,
-            slab_m: height_m / slabs as f32,
-            extinction: vec![0.0; n],
-            tangent: vec![Vec3::ZERO; n],
-            colour: vec![Vec3::ZERO; n],
-        }
+    pub fn new(layout: Layout) -> Self {
+        let n = layout.texels() * layout.slabs;
+        Self { layout, extinction: vec![0.0; n], tangent: vec![Vec3::ZERO; n], colour: vec![Vec3::ZERO; n] }
     }
 
     /// Adds another set with the same layout.
@@ -51,7 +75,7 @@ impl Voxels {
 
     /// The part of an array that belongs to one slab.
     pub fn slab<'a, T>(&self, values: &'a [T], slab: usize) -> &'a [T] {
-        let n = self.size * self.size;
+        let n = self.layout.texels();
         &values[slab * n..(slab + 1) * n]
     }
 
@@ -62,68 +86,117 @@ impl Voxels {
         let batches: Vec<Self> = (0..BATCHES)
             .into_par_iter()
             .map(|b| {
-                let mut voxels = Self::new(self.size, self.slabs, self.edge_m, self.slab_m * self.slabs as f32);
+                let mut voxels = Self::new(self.layout);
                 let range = (b * batch).min(strands.len())..((b + 1) * batch).min(strands.len());
                 voxels.deposit(strands, range, slopes, least_width_m);
                 voxels
             })
             .collect();
-        let mut sum = Self::new(self.size, self.slabs, self.edge_m, self.slab_m * self.slabs as f32);
+        let mut sum = Self::new(self.layout);
         batches.iter().for_each(|voxels| sum.add(voxels));
         sum
+    }
+
+    /// Adds `weight` (1/m) of a piece to a texel of its slab.
+    pub fn put(&mut self, piece: &Piece, texel: usize, weight: f32) {
+        let index = piece.slab * self.layout.texels() + texel;
+        self.extinction[index] += weight;
+        self.tangent[index] += weight * piece.direction;
+        self.colour[index] += weight * piece.colour;
     }
 
     /// Deposits the strands of `range`. Each piece goes where the mean strand through it, of slope `slopes[slab]`, crosses the slab's
     /// middle, spread over a square as wide as the hair (equal in area to its cross-section) or `least_width_m`.
     pub fn deposit(&mut self, strands: &Strands, range: Range<usize>, slopes: &[Vec2], least_width_m: f32) {
-        let segments = strands.points_per_strand - 1;
+        let layout = self.layout;
         for strand in range {
-            let points = strands.points_of_m(strand);
-            for (i, pair) in points.windows(2).enumerate() {
-                let along = pair[1] - pair[0];
-                let direction = along.normalize_or_zero();
-                if direction == Vec3::ZERO {
-                    continue;
-                }
-                // Steps short enough that each lies in one slab (nearly) and moves by at most half a texel.
-                let texel_m = self.edge_m / self.size as f32;
-                let steps = (along.truncate().length() / (0.5 * texel_m)).max(along.z.abs() / (0.25 * self.slab_m));
-                let steps = steps.ceil().max(1.0);
-                for step in 0..steps as usize {
-                    let t = (step as f32 + 0.5) / steps;
-                    let s = (i as f32 + t) / segments as f32;
-                    let diameter_m = 2.0 * strands.root_radius_m[strand] * strands.profile.radius_factor(s);
-                    let at = pair[0] + along * t;
-                    let slab = ((at.z / self.slab_m) as usize).min(self.slabs - 1);
-                    let middle_m = (slab as f32 + 0.5) * self.slab_m;
-                    let flat = at.truncate() - slopes[slab] * (at.z - middle_m);
-                    let amount = along.length() / steps * diameter_m * strands.profile.opacity_at(s);
-                    let colour = strands.tint[strand] * strands.profile.ramp_at(s);
-                    let width_m = (0.886_227 * diameter_m).max(least_width_m);
-                    self.splat(slab, flat, width_m, amount, direction, colour);
-                }
-            }
+            pieces(strands, strand, &layout, slopes, |piece| {
+                let width_m = piece.width_m(least_width_m);
+                let amount = piece.length_m * piece.diameter_m * piece.opacity;
+                let per_volume = amount / (layout.texel_m * layout.texel_m * layout.slab_m);
+                splat(&layout, piece.at_m, width_m, per_volume, |texel, weight| {
+                    self.put(piece, texel, weight);
+                });
+            });
         }
     }
+}
 
-    /// Spreads `amount` (ℓ D, m²) over a square of edge `width_m`, each texel getting what it covers of it.
-    fn splat(&mut self, slab: usize, at: Vec2, width_m: f32, amount: f32, direction: Vec3, colour: Vec3) {
-        let texel_m = self.edge_m / self.size as f32;
-        let per_volume = amount / (texel_m * texel_m * self.slab_m);
-        let low = (at - 0.5 * width_m) / texel_m;
-        let high = (at + 0.5 * width_m) / texel_m;
-        let width = (width_m / texel_m).max(1e-6);
-        let covered = |cell: i64, low: f32, high: f32| {
-            ((high.min(cell as f32 + 1.0) - low.max(cell as f32)) / width).clamp(0.0, 1.0)
-        };
-        let size = self.size as i64;
-        for y in low.y.floor() as i64..=high.y.floor() as i64 {
-            for x in low.x.floor() as i64..=high.x.floor() as i64 {
-                let weight = per_volume * covered(x, low.x, high.x) * covered(y, low.y, high.y);
-                let index = (slab * self.size + y.rem_euclid(size) as usize) * self.size + x.rem_euclid(size) as usize;
-                self.extinction[index] += weight;
-                self.tangent[index] += weight * direction;
-                self.colour[index] += weight * colour;
+/// A short piece of a strand, within one slab (nearly).
+pub struct Piece {
+    /// The slab.
+    pub slab: usize,
+    /// Where the mean strand through it crosses the slab's middle, m.
+    pub at_m: Vec2,
+    /// Its length, m.
+    pub length_m: f32,
+    /// Diameter in its middle, m.
+    pub diameter_m: f32,
+    /// How much thicker it is at its lower end than at its upper one, m.
+    pub taper_m: f32,
+    /// Whether the strand ends here.
+    pub tip: bool,
+    /// Opacity.
+    pub opacity: f32,
+    /// Unit vector along it.
+    pub direction: Vec3,
+    /// Colour.
+    pub colour: Vec3,
+}
+
+impl Piece {
+    /// Edge of the square that it is spread over: equal in area to its cross-section, or `least_m`.
+    pub fn width_m(&self, least_m: f32) -> f32 {
+        (0.886_227 * self.diameter_m).max(least_m)
+    }
+}
+
+/// Cuts a strand into pieces short enough that each lies in one slab and moves by at most half a texel.
+pub fn pieces(strands: &Strands, strand: usize, layout: &Layout, slopes: &[Vec2], mut each: impl FnMut(&Piece)) {
+    let segments = strands.points_per_strand - 1;
+    let root_m = 2.0 * strands.root_radius_m[strand];
+    for (i, pair) in strands.points_of_m(strand).windows(2).enumerate() {
+        let along = pair[1] - pair[0];
+        let direction = along.normalize_or_zero();
+        if direction == Vec3::ZERO {
+            continue;
+        }
+        let steps = (along.truncate().length() / (0.5 * layout.texel_m)).max(along.z.abs() / (0.25 * layout.slab_m));
+        let steps = steps.ceil().max(1.0);
+        let taper_m = root_m * (1.0 - strands.profile.taper) / (steps * segments as f32);
+        for step in 0..steps as usize {
+            let t = (step as f32 + 0.5) / steps;
+            let s = (i as f32 + t) / segments as f32;
+            let at = pair[0] + along * t;
+            let slab = ((at.z / layout.slab_m) as usize).min(layout.slabs - 1);
+            let middle_m = (slab as f32 + 0.5) * layout.slab_m;
+            each(&Piece {
+                slab,
+                at_m: at.truncate() - slopes[slab] * (at.z - middle_m),
+                length_m: along.length() / steps,
+                diameter_m: root_m * strands.profile.radius_factor(s),
+                taper_m,
+                tip: i + 1 == segments && step + 1 == steps as usize,
+                opacity: strands.profile.opacity_at(s),
+                direction,
+                colour: strands.tint[strand] * strands.profile.ramp_at(s),
+            });
+        }
+    }
+}
+
+/// Spreads `amount` over a square of edge `width_m`: gives `each` every texel with what it covers of it.
+pub fn splat(layout: &Layout, at_m: Vec2, width_m: f32, amount: f32, mut each: impl FnMut(usize, f32)) {
+    let texel_m = layout.texel_m;
+    let low = (at_m - 0.5 * width_m) / texel_m;
+    let high = (at_m + 0.5 * width_m) / texel_m;
+    let width = (width_m / texel_m).max(1e-6);
+    let covered =
+        |cell: i64, low: f32, high: f32| ((high.min(cell as f32 + 1.0) - low.max(cell as f32)) / width).clamp(0.0, 1.0);
+    for y in low.y.floor() as i64..=high.y.floor() as i64 {
+        for x in low.x.floor() as i64..=high.x.floor() as i64 {
+            if let Some(texel) = layout.texel(x, y) {
+                each(texel, amount * covered(x, low.x, high.x) * covered(y, low.y, high.y));
             }
         }
     }

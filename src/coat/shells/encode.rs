@@ -16,6 +16,8 @@ struct Texel {
     /// 1 − e^−κ.
     ends: f32,
     transmittance: f32,
+    /// Share of the texel that is skin.
+    weight: f32,
 }
 
 /// What the textures are made from.
@@ -32,25 +34,30 @@ pub struct Raw<'a> {
     pub skin: Vec3,
     /// Mean slope per slab.
     pub slopes: &'a [Vec2],
+    /// Share of each texel that is skin; empty where all of it is. What is not takes its values from around it.
+    pub skin_share: &'a [f32],
 }
 
 /// Builds all mips and codes them; gains are 1.
 pub fn encode(raw: &Raw<'_>) -> ShellStack {
     let voxels = raw.voxels;
-    let size = voxels.size;
+    let size = voxels.layout.size[0];
+    let weight = |texel: usize| raw.skin_share.get(texel).copied().unwrap_or(1.0);
     let mut layers: Vec<Vec<Texel>> = vec![
         raw.skin_transmittance
             .iter()
-            .map(|&transmittance| Texel {
+            .enumerate()
+            .map(|(i, &transmittance)| Texel {
                 extinction: 1.0,
                 tangent: Vec3::Z,
                 colour: raw.skin,
                 ends: 1.0,
                 transmittance,
+                weight: weight(i),
             })
             .collect(),
     ];
-    for slab in 0..voxels.slabs {
+    for slab in 0..voxels.layout.slabs {
         let texel = |i: usize| {
             let v = slab * size * size + i;
             Texel {
@@ -59,6 +66,7 @@ pub fn encode(raw: &Raw<'_>) -> ShellStack {
                 colour: voxels.colour[v],
                 ends: -libm::expm1f(-raw.ends[v]),
                 transmittance: raw.transmittance[v],
+                weight: weight(i),
             }
         };
         layers.push((0..size * size).map(texel).collect());
@@ -91,7 +99,8 @@ pub fn encode(raw: &Raw<'_>) -> ShellStack {
     stack
 }
 
-/// Halves until one texel is left; every value is averaged linearly (`docs/steps/shells.md`, mips).
+/// Halves until one texel is left; every value is averaged linearly over what is skin (`docs/steps/shells.md`, mips). Then
+/// texels without skin take the values of the next coarser level.
 fn pyramid(base: Vec<Texel>) -> Vec<Vec<Texel>> {
     let mut levels = vec![base];
     while levels[levels.len() - 1].len() > 1 {
@@ -100,19 +109,34 @@ fn pyramid(base: Vec<Texel>) -> Vec<Vec<Texel>> {
         let half = size / 2;
         let coarse = (0..half * half).map(|i| {
             let (x, y) = (2 * (i % half), 2 * (i / half));
-            let four = [y * size + x, y * size + x + 1, (y + 1) * size + x, (y + 1) * size + x + 1].map(|j| &fine[j]);
-            Texel {
-                extinction: four.iter().map(|t| t.extinction).sum::<f32>() * 0.25,
-                tangent: four.iter().map(|t| t.tangent).sum::<Vec3>() * 0.25,
-                colour: four.iter().map(|t| t.colour).sum::<Vec3>() * 0.25,
-                ends: four.iter().map(|t| t.ends).sum::<f32>() * 0.25,
-                transmittance: four.iter().map(|t| t.transmittance).sum::<f32>() * 0.25,
-            }
+            mean([y * size + x, y * size + x + 1, (y + 1) * size + x, (y + 1) * size + x + 1].map(|j| fine[j]))
         });
         let coarse = coarse.collect();
         levels.push(coarse);
     }
+    for level in (0..levels.len() - 1).rev() {
+        let (finer, coarser) = levels.split_at_mut(level + 1);
+        let (fine, coarse) = (&mut finer[level], &coarser[0]);
+        let size = fine.len().isqrt();
+        for (i, texel) in fine.iter_mut().enumerate().filter(|(_, texel)| texel.weight == 0.0) {
+            *texel = Texel { weight: 0.0, ..coarse[i / size / 2 * (size / 2) + i % size / 2] };
+        }
+    }
     levels
+}
+
+/// The mean of four texels over what is skin in them.
+fn mean(four: [Texel; 4]) -> Texel {
+    let weight: f32 = four.iter().map(|t| t.weight).sum();
+    let share = if weight > 0.0 { 1.0 / weight } else { 0.0 };
+    Texel {
+        extinction: four.iter().map(|t| t.weight * t.extinction).sum::<f32>() * share,
+        tangent: four.iter().map(|t| t.weight * t.tangent).sum::<Vec3>() * share,
+        colour: four.iter().map(|t| t.weight * t.colour).sum::<Vec3>() * share,
+        ends: four.iter().map(|t| t.weight * t.ends).sum::<f32>() * share,
+        transmittance: four.iter().map(|t| t.weight * t.transmittance).sum::<f32>() * share,
+        weight: 0.25 * weight,
+    }
 }
 
 /// Straight colour of every level; texels without hair take that of the next coarser level, so that filtering at a

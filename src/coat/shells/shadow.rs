@@ -18,7 +18,7 @@ pub fn transmittance(voxels: &Voxels, ends: &[f32]) -> (Vec<f32>, Vec<f32>) {
         .collect();
     let share = 1.0 / AZIMUTHS as f32;
     let slabs = (0..voxels.extinction.len()).map(|v| each.iter().map(|e| e.0[v]).sum::<f32>() * share).collect();
-    let skin = (0..voxels.size * voxels.size).map(|v| each.iter().map(|e| e.1[v]).sum::<f32>() * share).collect();
+    let skin = (0..voxels.layout.texels()).map(|v| each.iter().map(|e| e.1[v]).sum::<f32>() * share).collect();
     (slabs, skin)
 }
 
@@ -27,25 +27,27 @@ pub fn transmittance(voxels: &Voxels, ends: &[f32]) -> (Vec<f32>, Vec<f32>) {
 fn towards(voxels: &Voxels, ends: &[f32], azimuth_rad: f32) -> (Vec<f32>, Vec<f32>) {
     let (sin, cos) = libm::sincosf(azimuth_rad);
     let direction = crate::math::Vec3::new(cos, sin, 1.0) * FRAC_1_SQRT_2;
-    let size = voxels.size as i64;
-    let run = voxels.slab_m / (voxels.edge_m / voxels.size as f32);
+    let layout = voxels.layout;
+    let [width, height] = layout.size.map(|edge| edge as i64);
+    let run = layout.slab_m / layout.texel_m;
     // Whole texels, rounded so that the error does not add up over the slabs.
     let reach = |slab: usize| ((cos * run * slab as f32).round() as i64, (sin * run * slab as f32).round() as i64);
     let shifted = |texel: usize, (dx, dy): (i64, i64)| {
-        let (x, y) = (texel as i64 % size + dx, texel as i64 / size + dy);
-        (y.rem_euclid(size) * size + x.rem_euclid(size)) as usize
+        let (x, y) = (texel as i64 % width + dx, texel as i64 / width + dy);
+        // Beyond the border of a chart hair goes on as it is at the border.
+        layout.texel(x, y).unwrap_or((y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize)
     };
-    let n = voxels.size * voxels.size;
+    let n = layout.texels();
     let mut above = vec![0.0_f32; n];
-    let mut result = vec![0.0; voxels.slabs * n];
-    for slab in (0..voxels.slabs).rev() {
+    let mut result = vec![0.0; layout.slabs * n];
+    for slab in (0..layout.slabs).rev() {
         let (low, high) = (reach(slab), reach(slab + 1));
         let step = (high.0 - low.0, high.1 - low.1);
         let beyond: Vec<f32> = (0..n).map(|texel| above[shifted(texel, step)]).collect();
         for texel in 0..n {
             let v = slab * n + texel;
             let (a, along) = (voxels.extinction[v], direction.dot(voxels.tangent[v]));
-            let own = (a * a - along * along).max(0.0).sqrt() * voxels.slab_m / FRAC_1_SQRT_2 + ends[v];
+            let own = (a * a - along * along).max(0.0).sqrt() * layout.slab_m / FRAC_1_SQRT_2 + ends[v];
             result[v] = libm::expf(-0.5 * own - beyond[texel]);
             above[texel] = own + beyond[texel];
         }

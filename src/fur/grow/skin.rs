@@ -14,10 +14,16 @@ use rayon::prelude::*;
 ///
 /// Each triangle decides its own count and roots from its index, so order and threads do not matter.
 pub fn grow(fibre: &Fibre, mesh: &Mesh, fields: &Fields, seed: u64) -> Strands {
+    let all: Vec<usize> = (0..mesh.triangles.len()).collect();
+    grow_on(fibre, mesh, fields, seed, &all)
+}
+
+/// The hair of `triangles` alone, as [`grow`] would grow it.
+pub fn grow_on(fibre: &Fibre, mesh: &Mesh, fields: &Fields, seed: u64, triangles: &[usize]) -> Strands {
     let normals = mesh.smooth_normals();
-    let per_triangle: Vec<Strands> = (0..mesh.triangles.len())
-        .into_par_iter()
-        .map(|t| grow_triangle(fibre, mesh, &normals, fields, t, combine(seed, t as u64)))
+    let per_triangle: Vec<Strands> = triangles
+        .par_iter()
+        .map(|&t| grow_triangle(fibre, mesh, &normals, fields, t, combine(seed, t as u64)))
         .collect();
     let mut all = empty(fibre, per_triangle.iter().map(Strands::len).sum());
     for part in per_triangle {

@@ -9,7 +9,7 @@ use super::measure::measure;
 use super::pack::pack;
 use super::xatlas::{Options, charts};
 use crate::data::mesh::Mesh;
-use crate::data::patches::Patches;
+use crate::data::patches::{Patches, Square};
 use crate::data::topology::Topology;
 use crate::error::{Error, Result};
 use crate::math::{DVec2, Vec2, Vec3};
@@ -115,24 +115,85 @@ fn undo_stretch(faces: &[Face], patch_of: &[u32], triangles: &[[u32; 3]], uv: &m
     }
 }
 
-/// Gives each chart a rectangle of whole texels with padding around it.
-fn place(patches: &mut Patches, texels_per_tile: f32, padding: u32) {
+/// Corners of the box around each chart, in tiles.
+fn boxes(patches: &Patches) -> Vec<[Vec2; 2]> {
     let count = patches.patch.iter().max().map_or(0, |&p| p as usize + 1);
-    let mut low = vec![Vec2::INFINITY; count];
-    let mut high = vec![Vec2::NEG_INFINITY; count];
+    let mut boxes = vec![[Vec2::INFINITY, Vec2::NEG_INFINITY]; count];
     for (&p, &uv) in patches.patch.iter().zip(&patches.uv) {
-        low[p as usize] = low[p as usize].min(uv);
-        high[p as usize] = high[p as usize].max(uv);
+        let [low, high] = &mut boxes[p as usize];
+        (*low, *high) = (low.min(uv), high.max(uv));
     }
-    let size = |p: usize| {
-        let texels = ((high[p] - low[p]) * texels_per_tile).ceil();
+    boxes
+}
+
+/// Rectangles of whole texels around boxes, with padding.
+fn rectangles(boxes: &[[Vec2; 2]], texels_per_tile: f32, padding: u32) -> Vec<[u32; 2]> {
+    let size = |[low, high]: &[Vec2; 2]| {
+        let texels = ((*high - *low) * texels_per_tile).ceil();
         [texels.x as u32 + 2 * padding, texels.y as u32 + 2 * padding]
     };
-    let sizes: Vec<[u32; 2]> = (0..count).map(size).collect();
-    let packing = pack(&sizes);
+    boxes.iter().map(size).collect()
+}
+
+/// Gives each chart a rectangle of whole texels with padding around it.
+fn place(patches: &mut Patches, texels_per_tile: f32, padding: u32) {
+    let boxes = boxes(patches);
+    let packing = pack(&rectangles(&boxes, texels_per_tile, padding));
     for (&p, uv) in patches.patch.iter().zip(&mut patches.uv) {
         let at = packing.at[p as usize].map(|texel| (texel + padding) as f32 / texels_per_tile);
-        *uv += Vec2::from_array(at) - low[p as usize];
+        *uv += Vec2::from_array(at) - boxes[p as usize][0];
     }
     patches.extent = Vec2::new(packing.size[0] as f32, packing.size[1] as f32) / texels_per_tile;
+}
+
+/// Packs the charts of all `sets`, made for one edge of tile `tile_edge_m`, into one square of `texels` along its edge, as large as
+/// they go, with `padding` texels around each or as many fewer as it takes. UVs then run over the square, from 0 to 1.
+///
+/// # Errors
+/// When there are more charts than the square has room for.
+pub fn fit(sets: &mut [Patches], tile_edge_m: f32, texels: u32, padding: u32) -> Result<Square> {
+    let of_set: Vec<Vec<[Vec2; 2]>> = sets.iter().map(boxes).collect();
+    let all: Vec<[Vec2; 2]> = of_set.iter().flatten().copied().collect();
+    let packed = |texels_per_tile: f32, padding: u32| {
+        let sizes = rectangles(&all, texels_per_tile, padding);
+        let packing = pack(&sizes);
+        (packing.size[0].max(packing.size[1]) <= texels).then_some((packing.at, sizes))
+    };
+    let area: f32 = all.iter().map(|[low, high]| (*high - *low).max_element().powi(2)).sum();
+    for padding in [padding, padding / 2, padding / 4, 1] {
+        // The whole square would be full at the most; a thousandth of that is no picture of hair any more.
+        let mut most = 2.0 * texels as f32 / area.sqrt().max(1e-6);
+        let mut least = 1e-3 * most;
+        let Some(mut found) = packed(least, padding) else { continue };
+        for _ in 0..24 {
+            let middle = 0.5 * (least + most);
+            match packed(middle, padding) {
+                Some(packing) => (least, found) = (middle, packing),
+                None => most = middle,
+            }
+        }
+        let scale = least / texels as f32;
+        let mut next = 0;
+        let mut square = Square { texels, edge_m: tile_edge_m / scale, padding, charts: Vec::new() };
+        for (patches, boxes) in sets.iter_mut().zip(&of_set) {
+            for (&p, uv) in patches.patch.iter().zip(&mut patches.uv) {
+                let at = found.0[next + p as usize].map(|texel| (texel + padding) as f32 / texels as f32);
+                *uv = (*uv - boxes[p as usize][0]) * scale + Vec2::from_array(at);
+            }
+            let rectangle = |i: usize| [found.0[i][0], found.0[i][1], found.1[i][0], found.1[i][1]];
+            square.charts.push((next..next + boxes.len()).map(rectangle).collect());
+            next += boxes.len();
+            patches.extent = Vec2::ONE;
+            let density = &mut patches.stats.tiles_per_m;
+            for value in [&mut density.mean, &mut density.p5, &mut density.p95] {
+                *value *= f64::from(scale);
+            }
+        }
+        return Ok(square);
+    }
+    Err(Error::usage("the charts do not fit into the texture")
+        .with_field("--texture-size")
+        .with_found(format!("{texels}\u{b2} texels for {} charts", all.len()))
+        .with_expected("room for each with a texel around it")
+        .with_hint("give more texels, or use --parameterisation lapped"))
 }

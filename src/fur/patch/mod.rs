@@ -18,6 +18,7 @@ use crate::data::patches::Patches;
 use crate::error::{Error, Result};
 use crate::math::Vec3;
 
+pub use atlas::fit as fit_atlas;
 pub use seams::{SeamStats, measure_seams};
 pub use uv::usable as uv_usable;
 

@@ -1,6 +1,6 @@
 //! Structs as the shaders read them; `tests/shaders.rs` compares names, offsets and sizes with the WGSL.
 
-use crate::data::coat::{FinEdge, Tile};
+use crate::data::coat::{FinEdge, Sampled, Tile};
 use crate::runtime::scene::{Fur, MAX_LIGHTS, Skin, View};
 use bytemuck::{Pod, Zeroable};
 
@@ -64,6 +64,8 @@ pub struct TileUniform {
     pub layers: u32,
     /// Mips.
     pub mips: u32,
+    /// 1 where the coat's tint gives shells colour and density, 0 where the texels hold them.
+    pub tinted: f32,
 }
 
 /// `Mip` of `shared/coat.wgsl`.
@@ -93,6 +95,7 @@ impl TileUniform {
             size: tile.shells.size as f32,
             layers: tile.shells.layers,
             mips: tile.shells.albedo.len() as u32,
+            tinted: if tile.sampled == Sampled::Square { 1.0 } else { 0.0 },
         }
     }
 }

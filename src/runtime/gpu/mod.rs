@@ -7,7 +7,7 @@ pub mod layout;
 pub mod pipelines;
 mod resources;
 
-use crate::data::coat::{FinTexture, ShellStack, Tile};
+use crate::data::coat::{FinTexture, Sampled, ShellStack, Tile};
 use crate::data::image::Image8;
 use crate::error::{Error, Result};
 use crate::gpu::{Gpu, Timer};
@@ -242,6 +242,7 @@ fn bare_tile() -> Tile {
     let fin = texel(4).remove(0);
     Tile {
         preset: String::new(),
+        sampled: Sampled::Square,
         edge_m: 1.0,
         height_m: 1.0,
         shells: ShellStack {

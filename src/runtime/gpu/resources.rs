@@ -3,7 +3,7 @@
 use super::layout::{CoatVertex, FinInstance, Mip, SkinVertex, TileUniform};
 use super::pipelines::Layouts;
 use crate::asset::material::Wrap;
-use crate::data::coat::Tile;
+use crate::data::coat::{Sampled, Tile};
 use crate::data::image::Image8;
 use crate::error::Result;
 use crate::gpu::{Coding, Gpu, TextureArray};
@@ -73,7 +73,8 @@ impl GpuTile {
         let slopes: Vec<[f32; 2]> = shells.slopes.iter().map(|slope| slope.to_array()).collect();
         let slopes = gpu.buffer("slopes", &slopes, wgpu::BufferUsages::STORAGE);
         let mips = gpu.buffer("mips", &Mip::of(tile), wgpu::BufferUsages::STORAGE);
-        let hair_sampler = sampler(gpu, [Wrap::Repeat; 2], 1);
+        let wrap = if tile.sampled == Sampled::Square { Wrap::Repeat } else { Wrap::Clamp };
+        let hair_sampler = sampler(gpu, [wrap; 2], 1);
         let group = bind(
             gpu,
             &layouts.tile,

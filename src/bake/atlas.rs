@@ -1,0 +1,67 @@
+//! An atlas: hair grown on the parts themselves, charts of all of them in one square.
+
+use super::{Dressed, Steps, Task, skin};
+use crate::coat::atlas::{self, judge};
+use crate::error::Result;
+use crate::fur::patch::{Parameterisation, fit_atlas, parameterise};
+
+/// Texels that charts keep free around themselves: the second mip's, below which neighbouring hair looks alike anyway.
+const PADDING: u32 = 4;
+/// Texels along the square's edge over those along a preset's tile, where none are asked for, and the most of them then.
+const TEXELS: (u32, u32) = (4, 2048);
+
+/// Places that a report looks at.
+const PLACES: usize = 8;
+
+/// Bakes the atlas of the task's parts and puts it on them.
+pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>) -> Result<Dressed> {
+    let (fibres, recipe) = (task.fibres(), task.recipe());
+    let texels = texels.unwrap_or_else(|| (TEXELS.0 * recipe.shells.texture_size).min(TEXELS.1));
+    let tile_m = recipe.shells.tile_mm * 1e-3;
+    let (mut groomed, mut patches, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
+    for &part in task.parts {
+        let skin = steps.run("groom", || {
+            skin::groom(task.asset, &task.asset.parts[part], task.preset, task.scale.metres_per_unit)
+        })?;
+        let method = Parameterisation::Atlas { texels_per_tile: recipe.shells.texture_size, padding_texels: PADDING };
+        let charts = steps.run("patches", || parameterise(&skin.mesh, &skin.fields.direction, tile_m, method))?;
+        warnings.extend(skin.notes.iter().chain(&charts.stats.warnings).cloned());
+        groomed.push(skin);
+        patches.push(charts);
+    }
+    let square = steps.run("patches", || fit_atlas(&mut patches, tile_m, texels, PADDING))?;
+    let skins: Vec<atlas::Skin<'_>> = (0..groomed.len())
+        .map(|i| atlas::Skin {
+            mesh: &groomed[i].mesh,
+            fields: &groomed[i].fields,
+            patches: &patches[i],
+            seed: task.seed(task.parts[i]),
+        })
+        .collect();
+    let tile =
+        steps.run("atlas", || atlas::bake(&skins, &square, [&fibres[0], &fibres[1]], &recipe, task.request.seed));
+    let worn = (0..groomed.len())
+        .map(|i| {
+            let primitive = steps.run("wear", || task.wear(task.parts[i], &groomed[i], &patches[i], &tile));
+            (primitive, patches[i].stats.clone())
+        })
+        .collect();
+    // The largest skin speaks for all: each place means growing its hair again, every single one.
+    let area_m2 = |i: &usize| patches[*i].stats.area_m2;
+    let largest = (0..groomed.len()).max_by(|a, b| area_m2(a).total_cmp(&area_m2(b)));
+    let judged = largest.filter(|_| task.request.judge).map(|i| {
+        let (mesh, fields, seed) = (&groomed[i].mesh, &groomed[i].fields, skins[i].seed);
+        let furred = |t: usize| mesh.triangles[t].iter().all(|&v| fields.length[v as usize] > 0.0);
+        let at = judge::places(mesh, PLACES, seed, furred);
+        let worn =
+            judge::Worn { mesh, fields, patches: &patches[i], tile: &tile, hair: [&fibres[0], &fibres[1]], seed };
+        steps.run("judge", || judge::surface_tables(&worn, &[at]))
+    });
+    let accuracy = judged.and_then(|mut groups| groups.pop());
+    let note = format!(
+        "the atlas of {} has {texels}\u{b2} texels of {:.2} mm; --texture-size N changes that",
+        task.preset.name,
+        square.edge_m / texels as f32 * 1e3
+    );
+    Ok(Dressed { tile, worn, accuracy, notes: vec![note], warnings })
+}

@@ -1,0 +1,290 @@
+//! Shells sampled on the skin itself: every texel of an atlas holds the hair that grows there (`docs/steps/shells.md`, "On
+//! the skin").
+
+pub mod flatten;
+pub mod judge;
+pub mod skirt;
+
+use crate::coat::fins::texture;
+use crate::coat::shells::deposit::{Layout, Voxels};
+use crate::coat::shells::encode::{Raw, encode};
+use crate::coat::shells::{ends, gains, shadow};
+use crate::coat::tile::{TileHair, TileRecipe, leaning, slab_means, slopes};
+use crate::data::coat::{Sampled, Tile};
+use crate::data::fields::Fields;
+use crate::data::mesh::Mesh;
+use crate::data::patches::{Patches, Square};
+use crate::data::strands::Strands;
+use crate::data::topology::Topology;
+use crate::fur::groom::fibre::Fibre;
+use crate::fur::grow;
+use crate::math::Vec2;
+use crate::math::hash::combine;
+use flatten::{by_triangle, flatten};
+use rayon::prelude::*;
+use skirt::Region;
+use std::ops::Range;
+
+/// Hairs of each kind over a texel that are more than it can tell apart: from here on one stands for several.
+const MOST_PER_TEXEL: f32 = 8.0;
+/// Furthest that hair from around a chart is looked for, texels.
+const FURTHEST: f32 = 32.0;
+/// Edge of the square on which gains are fitted, texels.
+const REFERENCE: (usize, usize) = (8, 256);
+/// Points along a texel's edge that decide how much of it is skin.
+const SAMPLES: usize = 4;
+/// Least share of skin in a texel that its hair is divided by.
+const LEAST_SHARE: f32 = 0.25;
+
+/// A skin that wears a part of the atlas.
+#[derive(Clone, Copy, Debug)]
+pub struct Skin<'a> {
+    /// The mesh.
+    pub mesh: &'a Mesh,
+    /// The groom's fields on it.
+    pub fields: &'a Fields,
+    /// Its charts, in the square.
+    pub patches: &'a Patches,
+    /// Decides where each hair grows.
+    pub seed: u64,
+}
+
+/// One kind of hair, thinned so that there are not many more hairs than texels.
+struct Kind {
+    fibre: Fibre,
+    /// Hairs that one stands for.
+    thinning: f32,
+    /// Least width that a hair is spread over, m.
+    width_m: f32,
+}
+
+impl Kind {
+    /// `spread`: how much of the mean distance between hairs each is spread over, even if it is not thinned.
+    fn new(fibre: &Fibre, texel_m: f32, spread: Option<f32>) -> Self {
+        let thinning = (fibre.density_per_m2 * texel_m * texel_m / MOST_PER_TEXEL).max(1.0);
+        let mut fibre = *fibre;
+        fibre.density_per_m2 /= thinning;
+        fibre.radius_m *= thinning;
+        let distance_m = 1.0 / fibre.density_per_m2.max(1e-6).sqrt();
+        let spread = spread.or((thinning > 1.0).then_some(1.0)).unwrap_or(0.0);
+        Self { fibre, thinning, width_m: spread * distance_m }
+    }
+}
+
+/// A layout filled with both kinds of hair.
+struct Filled {
+    voxels: Voxels,
+    ends: Vec<f32>,
+    transmittance: Vec<f32>,
+    skin_transmittance: Vec<f32>,
+}
+
+impl Filled {
+    fn new(layout: Layout, kinds: &[Kind; 2], strands: [&Strands; 2], slopes: &[Vec2]) -> Self {
+        let mut voxels = Voxels::new(layout);
+        let mut ends = vec![0.0; layout.texels() * layout.slabs];
+        for (kind, strands) in kinds.iter().zip(strands) {
+            ends::deposit_with_ends(strands, slopes, (kind.width_m, kind.thinning), &mut voxels, &mut ends);
+        }
+        let (transmittance, skin_transmittance) = shadow::transmittance(&voxels, &ends);
+        Self { voxels, ends, transmittance, skin_transmittance }
+    }
+}
+
+/// Bakes the atlas of `skins`, whose charts share `square`. `guard` and `undercoat` grow on them; `seed` decides about the
+/// square of hair that gains and the fin texture are taken from.
+pub fn bake(skins: &[Skin<'_>], square: &Square, hair: [&Fibre; 2], recipe: &TileRecipe, seed: u64) -> Tile {
+    let texel_m = square.edge_m / square.texels as f32;
+    let kinds = [Kind::new(hair[0], texel_m, None), Kind::new(hair[1], texel_m, Some(1.5))];
+    let slabs = recipe.shells.layers as usize - 1;
+    let reference = Reference::new(hair, &kinds, recipe, texel_m, seed);
+    let height_m = reference.hair.height_m;
+    let layout = Layout { toroidal: false, ..Layout::tile(square.texels as usize, slabs, square.edge_m, height_m) };
+
+    let n = layout.texels();
+    let mut all = Filled {
+        voxels: Voxels::new(layout),
+        ends: vec![0.0; n * slabs],
+        transmittance: vec![1.0; n * slabs],
+        skin_transmittance: vec![1.0; n],
+    };
+    let mut skin_share = vec![0.0; n];
+    for (skin, rectangles) in skins.iter().zip(&square.charts) {
+        let grown =
+            [0, 1].map(|i| grow::skin::grow(&kinds[i].fibre, skin.mesh, skin.fields, combine(skin.seed, i as u64 + 1)));
+        let skin = Grown {
+            skin,
+            ranges: [0, 1].map(|i| by_triangle(&grown[i], skin.mesh.triangles.len())),
+            strands: &grown,
+            topology: Topology::new(&skin.mesh.triangles, |v| skin.mesh.position_class[v as usize]),
+        };
+        let mut own = vec![Vec::new(); rectangles.len()];
+        for (t, triangle) in skin.skin.patches.triangles.iter().enumerate() {
+            own[skin.skin.patches.patch[triangle[0] as usize] as usize].push(t);
+        }
+        // Charts lie apart, so each is filled by itself; a few at a time, or their sum would stand in memory twice.
+        for (rectangles, own) in rectangles.chunks(64).zip(own.chunks(64)) {
+            let charts: Vec<Chart> = rectangles
+                .par_iter()
+                .zip(own)
+                .map(|(&rectangle, own)| skin.chart(&kinds, square, rectangle, own, &layout, &reference))
+                .collect();
+            charts.iter().for_each(|chart| chart.place(&mut all, &mut skin_share));
+        }
+    }
+    let shells = encode(&Raw {
+        voxels: &all.voxels,
+        ends: &all.ends,
+        transmittance: &all.transmittance,
+        skin_transmittance: &all.skin_transmittance,
+        skin: recipe.skin,
+        slopes: &reference.slopes,
+        skin_share: &skin_share,
+    });
+    let mut tile = Tile { sampled: Sampled::Skin, edge_m: square.edge_m, shells, ..reference.tile };
+    let gains = &reference.gains;
+    tile.shells.gains = (0..tile.shells.albedo.len()).map(|mip| gains[mip.min(gains.len() - 1)]).collect();
+    tile
+}
+
+/// The same hair on toroidal squares: what gains, slopes and the fin texture are taken from.
+struct Reference {
+    /// Every hair, on a tile as a tiled coat has it.
+    hair: TileHair,
+    slopes: Vec<Vec2>,
+    gains: Vec<[f32; 9]>,
+    /// Thinned as the atlas is, with texels of the atlas's size.
+    tile: Tile,
+    /// Furthest that a point of a hair is from its root, along the skin, m.
+    reach_m: f32,
+}
+
+impl Reference {
+    fn new(hair: [&Fibre; 2], kinds: &[Kind; 2], recipe: &TileRecipe, texel_m: f32, seed: u64) -> Self {
+        let across = (recipe.shells.tile_mm * 1e-3 / texel_m).ceil() as usize;
+        let size = across.next_power_of_two().clamp(REFERENCE.0, REFERENCE.1);
+        let edge_m = size as f32 * texel_m;
+        let slabs = recipe.shells.layers as usize - 1;
+        let full = TileHair::grow(hair[0], hair[1], recipe.shells.tile_mm * 1e-3, seed);
+        let mut thin = TileHair::grow(&kinds[0].fibre, &kinds[1].fibre, edge_m, seed);
+        thin.height_m = full.height_m;
+        let lean = leaning(recipe.lean_deg);
+        let truth = || {
+            let worn = full.worn(lean);
+            gains::strand_transmittance(worn.scene(), worn.edge_m, worn.height_m, lean)
+        };
+        let stack = || {
+            let slopes = slopes(&thin, slabs);
+            let layout = Layout::tile(size, slabs, edge_m, full.height_m);
+            (Filled::new(layout, kinds, [&thin.guard, &thin.undercoat], &slopes), slopes)
+        };
+        let fin = || texture::composite(&full, &recipe.fins);
+        let ((filled, slopes), (truth, fin)) = rayon::join(stack, || rayon::join(truth, fin));
+        let shells = encode(&Raw {
+            voxels: &filled.voxels,
+            ends: &filled.ends,
+            transmittance: &filled.transmittance,
+            skin_transmittance: &filled.skin_transmittance,
+            skin: recipe.skin,
+            slopes: &slopes,
+            skin_share: &[],
+        });
+        let fin = texture::encode(&fin, &full, &recipe.fins, &slab_means(&filled.transmittance, slabs));
+        let tile = Tile {
+            preset: recipe.preset.clone(),
+            sampled: Sampled::Square,
+            edge_m,
+            height_m: full.height_m,
+            shells,
+            fin,
+        };
+        let reach = |s: &Strands| {
+            let far = |i: usize| s.points_of_m(i).iter().map(move |p| (*p - s.points_of_m(i)[0]).truncate().length());
+            (0..s.len()).flat_map(far).fold(0.0, f32::max)
+        };
+        let reach_m = reach(&thin.guard).max(reach(&thin.undercoat));
+        let gains = gains::fit(&tile, &truth, lean);
+        Self { slopes, gains, tile, reach_m, hair: full }
+    }
+}
+
+/// A skin with its hair.
+struct Grown<'a> {
+    skin: &'a Skin<'a>,
+    strands: &'a [Strands; 2],
+    ranges: [Vec<Range<usize>>; 2],
+    topology: Topology,
+}
+
+impl Grown<'_> {
+    /// Fills one chart with its own hair and that from around it.
+    fn chart(
+        &self,
+        kinds: &[Kind; 2],
+        square: &Square,
+        rectangle: [u32; 4],
+        own: &[usize],
+        layout: &Layout,
+        reference: &Reference,
+    ) -> Chart {
+        let Skin { mesh, fields, patches, .. } = *self.skin;
+        let margin = (reference.reach_m / layout.texel_m).ceil().min(FURTHEST) as u32 + 1;
+        let region = Region::new(mesh, &self.topology, patches, own, square.texels, rectangle, margin);
+        let layout = Layout { size: region.size, ..*layout };
+        let flat = [0, 1].map(|i| flatten(&self.strands[i], &self.ranges[i], (mesh, fields), &region, layout.texel_m));
+        let mut filled = Filled::new(layout, kinds, [&flat[0], &flat[1]], &reference.slopes);
+        let skin_share: Vec<f32> = (0..layout.texels()).map(|i| skin_share(&region, i)).collect();
+        // A texel's values are means over what of it is skin.
+        for (i, share) in skin_share.iter().enumerate().filter(|(_, share)| **share > 0.0 && **share < 1.0) {
+            let over = 1.0 / share.max(LEAST_SHARE);
+            for v in (0..layout.slabs).map(|slab| slab * layout.texels() + i) {
+                filled.voxels.extinction[v] *= over;
+                filled.voxels.tangent[v] *= over;
+                filled.voxels.colour[v] *= over;
+                filled.ends[v] *= over;
+            }
+        }
+        Chart { rectangle, margin: margin as usize, filled, skin_share }
+    }
+}
+
+/// How much of a texel is skin.
+fn skin_share(region: &Region, texel: usize) -> f32 {
+    let (x, y) = (texel % region.size[0], texel / region.size[0]);
+    let at = |i: usize| (i as f32 + 0.5) / SAMPLES as f32;
+    let points = (0..SAMPLES * SAMPLES)
+        .filter(|i| region.at(Vec2::new(x as f32 + at(i % SAMPLES), y as f32 + at(i / SAMPLES))).is_some());
+    points.count() as f32 / (SAMPLES * SAMPLES) as f32
+}
+
+/// A chart's texels, `margin` more than its rectangle on every side.
+struct Chart {
+    rectangle: [u32; 4],
+    margin: usize,
+    filled: Filled,
+    skin_share: Vec<f32>,
+}
+
+impl Chart {
+    /// Copies the rectangle into the square.
+    fn place(&self, all: &mut Filled, skin_share: &mut [f32]) {
+        let [left, top, width, height] = self.rectangle.map(|n| n as usize);
+        let (from, to) = (self.filled.voxels.layout, all.voxels.layout);
+        for y in 0..height {
+            let source = (y + self.margin) * from.size[0] + self.margin;
+            let target = (top + y) * to.size[0] + left;
+            skin_share[target..target + width].copy_from_slice(&self.skin_share[source..source + width]);
+            all.skin_transmittance[target..target + width]
+                .copy_from_slice(&self.filled.skin_transmittance[source..source + width]);
+            for slab in 0..to.slabs {
+                let (s, t) = (slab * from.texels() + source, slab * to.texels() + target);
+                let (own, voxels) = (&self.filled.voxels, &mut all.voxels);
+                voxels.extinction[t..t + width].copy_from_slice(&own.extinction[s..s + width]);
+                voxels.tangent[t..t + width].copy_from_slice(&own.tangent[s..s + width]);
+                voxels.colour[t..t + width].copy_from_slice(&own.colour[s..s + width]);
+                all.ends[t..t + width].copy_from_slice(&self.filled.ends[s..s + width]);
+                all.transmittance[t..t + width].copy_from_slice(&self.filled.transmittance[s..s + width]);
+            }
+        }
+    }
+}
