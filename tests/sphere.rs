@@ -91,6 +91,7 @@ fn strands(preset: &Preset, width_m: f32) -> f32 {
         units: Units::Auto,
         seed: 3,
         only: Only::Hybrid,
+        pose: None,
     })
     .unwrap();
     let pelt = grown.pelt();

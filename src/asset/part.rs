@@ -111,6 +111,7 @@ impl Part {
                 .clone()
                 .map(|v| ((self.world_units(v) - self.centre_units) * metres_per_unit).as_vec3())
                 .collect(),
+            rest_m: None,
             normals: vertices.map(|v| world_normal(&self.map(v).matrix3, stored.normals[v])).collect(),
             triangles,
             position_class: stored.position_class.clone(),

@@ -44,6 +44,8 @@ pub struct Scene {
     pub seed: u64,
     /// Which hair is drawn.
     pub only: Only,
+    /// An animation by name or number, and seconds into it; the rest pose without.
+    pub pose: Option<(String, f64)>,
 }
 
 /// Skin and hair, grown and ready to be drawn.
@@ -71,11 +73,21 @@ impl Grown {
         let scale = units::scale(scene.units, preset, &asset, scene.input.starts_with("sample:"))?;
         let mut notes = asset.warnings.clone();
         notes.extend(scale.note);
+        let pose = match &scene.pose {
+            Some((animation, seconds)) => {
+                let index = asset.animation(animation).map_err(|e| e.with_field("--pose"))?;
+                Some(asset.pose(index, *seconds)?)
+            }
+            None => None,
+        };
         let mut all: Option<Groomed> = None;
         for (index, part) in asset.parts.iter().enumerate() {
             let mut groomed = skin::groom(&asset, part, preset, scale.metres_per_unit)?;
             if !chosen.contains(&index) {
                 groomed.fields.density.fill(0.0);
+            }
+            if let Some(pose) = &pose {
+                groomed = groomed.pose(&asset, part, pose, scale.metres_per_unit)?;
             }
             notes.append(&mut groomed.notes);
             match &mut all {
@@ -129,8 +141,9 @@ impl Grown {
     }
 
     /// A camera at an azimuth and elevation that frames skin and hair; `distance` 1 fills the picture's height or width.
+    /// It frames the rest pose, so that it stands still while an animation plays.
     pub fn camera(&self, azimuth_deg: f32, elevation_deg: f32, distance: f32, size: [usize; 2]) -> Camera {
-        let mesh = &self.groomed.mesh;
+        let mesh = &self.groomed.mesh.at_rest();
         let (low, high) = mesh.bounds_m();
         let hair_m = self.guard.1.longest_m().max(self.undercoat.longest_m());
         let (azimuth, elevation) = (azimuth_deg.to_radians(), elevation_deg.clamp(-89.0, 89.0).to_radians());
@@ -172,6 +185,9 @@ fn join(all: &mut Groomed, next: Groomed) {
     let first = mesh.positions_m.len() as u32;
     let shift = (other.origin_m - mesh.origin_m).as_vec3();
     mesh.positions_m.extend(other.positions_m.iter().map(|&p| p + shift));
+    if let (Some(rest), Some(other)) = (&mut mesh.rest_m, other.rest_m) {
+        rest.extend(other.iter().map(|&p| p + shift));
+    }
     mesh.normals.extend(other.normals);
     mesh.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + first)));
     mesh.position_class.extend(other.position_class.iter().map(|c| c + first));

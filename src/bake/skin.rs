@@ -1,7 +1,7 @@
 //! One part made ready to wear fur: its mesh in metres and the fields on it.
 
 use crate::asset::material::BaseColour;
-use crate::asset::{Asset, Part, image};
+use crate::asset::{Asset, Part, Pose, image};
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::error::Result;
@@ -33,6 +33,33 @@ pub fn groom(asset: &Asset, part: &Part, preset: &Preset, metres_per_unit: f64) 
     let comb = comb(&mesh, preset, &maps)?;
     let tint = tint(asset, part, &mesh, preset)?;
     Ok(Groomed { fields: fields::gather(&mesh, &preset.groom, &maps, comb, tint), mesh, notes })
+}
+
+impl Groomed {
+    /// Puts the skin into a pose. Hair follows it as a coat's does: by the map of the skin under its root, without growing
+    /// longer where the skin is stretched.
+    ///
+    /// # Errors
+    /// Where the pose takes a vertex beyond what f32 can hold.
+    pub fn pose(self, asset: &Asset, part: &Part, pose: &Pose, metres_per_unit: f64) -> Result<Self> {
+        let posed = part.posed(asset, pose, part.nodes[0], metres_per_unit);
+        let Self { mesh, mut fields, notes } = self;
+        let turned = |v: usize, direction: Vec3| {
+            let local = part.local_from_world(v) * (direction.as_dvec3() / metres_per_unit);
+            posed.world_from_offset[v].as_dmat3() * local
+        };
+        for v in 0..mesh.positions_m.len() {
+            let along = turned(v, fields.direction[v]).as_vec3();
+            fields.direction[v] = along.reject_from(posed.normals[v]).normalize_or_zero();
+            fields.lean[v] = turned(v, fields.lean[v]).as_vec3().normalize_or(posed.normals[v]);
+        }
+        let mut mesh =
+            Mesh { rest_m: Some(mesh.positions_m), positions_m: posed.positions_m, normals: posed.normals, ..mesh };
+        if posed.mirrored != part.mirrored() {
+            mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        }
+        Ok(Self { mesh: mesh.checked()?, fields, notes })
+    }
 }
 
 fn decode(maps: &preset::Maps) -> Result<Maps> {

@@ -1,10 +1,13 @@
 //! The skin that fur grows on.
 
 use crate::error::{Error, Result};
-use crate::math::{DVec3, Vec2, Vec3, Vec4};
+use crate::math::{DVec3, I64Vec3, Mat3, Vec2, Vec3, Vec4};
 use std::collections::HashMap;
 
-/// A triangle mesh in metres, world axes (+Y up), rest pose, relative to `origin_m`.
+/// What the largest area counts when areas are summed in whole numbers: 2²³ triangles around a vertex still fit.
+const WHOLE: f64 = (1_u64 << 40) as f64;
+
+/// A triangle mesh in metres, world axes (+Y up), relative to `origin_m`.
 ///
 /// Vertex arrays have one entry per vertex; optional ones are absent or just as long.
 #[derive(Clone, Debug, Default)]
@@ -13,6 +16,9 @@ pub struct Mesh {
     pub origin_m: DVec3,
     /// Vertex positions, m.
     pub positions_m: Vec<Vec3>,
+    /// Where the vertices are in the rest pose, m, where `positions_m` are in another: how many hairs there are and how
+    /// they clump is decided there, so that every pose wears the same hair.
+    pub rest_m: Option<Vec<Vec3>>,
     /// Unit vertex normals.
     pub normals: Vec<Vec3>,
     /// Vertex indices, counter-clockwise from outside.
@@ -42,6 +48,9 @@ impl Mesh {
         if self.normals.len() != vertices || self.position_class.len() != vertices {
             return fault("normals", format!("{} entries", self.normals.len()), "one entry per vertex");
         }
+        if self.rest_m.as_ref().is_some_and(|rest| rest.len() != vertices) {
+            return fault("rest positions", "another number of entries".into(), "one entry per vertex");
+        }
         if let Some(i) = self.positions_m.iter().position(|p| !p.is_finite()) {
             return fault(&format!("positions[{i}]"), self.positions_m[i].to_string(), "finite numbers");
         }
@@ -67,6 +76,36 @@ impl Mesh {
         self.triangles[t].map(|v| self.positions_m[v as usize])
     }
 
+    /// The three corners of triangle `t` in the rest pose, m.
+    pub fn rest_corners_m(&self, t: usize) -> [Vec3; 3] {
+        let positions = self.rest_m.as_ref().unwrap_or(&self.positions_m);
+        self.triangles[t].map(|v| positions[v as usize])
+    }
+
+    /// Area of triangle `t` in the rest pose, m².
+    pub fn rest_area_m2(&self, t: usize) -> f32 {
+        let [a, b, c] = self.rest_corners_m(t);
+        0.5 * (b - a).cross(c - a).length()
+    }
+
+    /// Takes directions at triangle `t` from the rest pose to where the mesh is: along the skin as the triangle is
+    /// stretched, off it along its normal.
+    pub fn posed_from_rest(&self, t: usize) -> Mat3 {
+        if self.rest_m.is_none() {
+            return Mat3::IDENTITY;
+        }
+        let frame = |[a, b, c]: [Vec3; 3]| Mat3::from_cols(b - a, c - a, (b - a).cross(c - a).normalize_or_zero());
+        let rest = frame(self.rest_corners_m(t));
+        let map = frame(self.corners_m(t)) * rest.inverse();
+        if rest.determinant() != 0.0 && map.is_finite() { map } else { Mat3::IDENTITY }
+    }
+
+    /// The mesh in its rest pose.
+    pub fn at_rest(&self) -> Self {
+        let positions_m = self.rest_m.clone().unwrap_or_else(|| self.positions_m.clone());
+        Self { positions_m, rest_m: None, ..self.clone() }
+    }
+
     /// Twice the area of triangle `t` times its unit normal, m².
     pub fn area_vector_m2(&self, t: usize) -> Vec3 {
         let [a, b, c] = self.corners_m(t);
@@ -81,19 +120,22 @@ impl Mesh {
     /// Unit normals summed over the triangles around each vertex, weighted by area, one per vertex, shared across its
     /// position class, so that what is extruded along them does not crack at seams.
     pub fn smooth_normals(&self) -> Vec<Vec3> {
-        let mut sums = vec![Vec3::ZERO; self.positions_m.len()];
-        for (t, triangle) in self.triangles.iter().enumerate() {
-            let area_vector = self.area_vector_m2(t);
+        let areas: Vec<DVec3> = (0..self.triangles.len()).map(|t| self.area_vector_m2(t).as_dvec3()).collect();
+        let largest = areas.iter().map(|a| a.abs().max_element()).fold(0.0, f64::max);
+        // Whole numbers add up to the same whatever the triangles' order.
+        let scale = if largest > 0.0 { WHOLE / largest } else { 0.0 };
+        let mut sums = vec![I64Vec3::ZERO; self.positions_m.len()];
+        for (triangle, area) in self.triangles.iter().zip(areas) {
             for &v in triangle {
-                sums[self.position_class[v as usize] as usize] += area_vector;
+                sums[self.position_class[v as usize] as usize] += (area * scale).as_i64vec3();
             }
         }
         self.position_class
             .iter()
             .enumerate()
             .map(|(v, &class)| {
-                let n = sums[class as usize].normalize_or_zero();
-                if n == Vec3::ZERO { self.normals[v] } else { n }
+                let normal = sums[class as usize].as_dvec3().try_normalize();
+                normal.map_or(self.normals[v], |n| n.as_vec3())
             })
             .collect()
     }

@@ -6,7 +6,9 @@ pub mod noise;
 pub mod sampling;
 pub mod sparse;
 
-pub use glam::{DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4, Mat3, Mat4, Quat, UVec2, UVec3, Vec2, Vec3, Vec4};
+pub use glam::{
+    DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4, I64Vec3, Mat3, Mat4, Quat, UVec2, UVec3, Vec2, Vec3, Vec4,
+};
 
 /// Any unit vector at a right angle to the unit vector `n`, and the third axis: (t, b) with t × b = n.
 /// Continuous but at n.z = 0⁻ (Duff et al. 2017, "Building an orthonormal basis, revisited").

@@ -12,7 +12,8 @@ use rayon::prelude::*;
 
 /// Grows one kind of hair on the whole mesh.
 ///
-/// Each triangle decides its own count and roots from its index, so order and threads do not matter.
+/// Each triangle decides its own count and roots from its index, so order and threads do not matter. A posed mesh wears
+/// the hairs of its rest pose: as many, with the same ids, lengths and shapes.
 pub fn grow(fibre: &Fibre, mesh: &Mesh, fields: &Fields, seed: u64) -> Strands {
     let all: Vec<usize> = (0..mesh.triangles.len()).collect();
     grow_on(fibre, mesh, fields, seed, &all)
@@ -39,10 +40,11 @@ pub fn grow_on(fibre: &Fibre, mesh: &Mesh, fields: &Fields, seed: u64, triangles
 fn grow_triangle(fibre: &Fibre, mesh: &Mesh, normals: &[Vec3], fields: &Fields, t: usize, key: u64) -> Strands {
     let corners = mesh.triangles[t].map(|v| v as usize);
     let greatest = corners.iter().map(|&v| fields.density[v]).fold(0.0, f32::max);
-    let expected = fibre.density_per_m2 * mesh.area_m2(t) * greatest;
+    let expected = fibre.density_per_m2 * mesh.rest_area_m2(t) * greatest;
     let count = (expected + unit_f32(key)).floor() as u64;
     let mut strands = empty(fibre, count as usize);
     let mut points = vec![Vec3::ZERO; strands.points_per_strand];
+    let posed_from_rest = mesh.posed_from_rest(t);
     for i in 0..count {
         let key = combine(key, i);
         let b = sampling::square_to_triangle(sampling::r2(i, key & !0xFFFF));
@@ -57,7 +59,9 @@ fn grow_triangle(fibre: &Fibre, mesh: &Mesh, normals: &[Vec3], fields: &Fields, 
         let lean = mix3(corners.map(|v| fields.lean[v])).normalize_or(normal);
         let x_axis = tangent(mix3(corners.map(|v| fields.direction[v])), normal);
         let y_axis = normal.cross(x_axis);
-        let to_clump = clump::to_centre_in_space(root, fibre.shape.clump.spacing_mm * 1e-3, 0);
+        let rest_root = mix3(mesh.rest_corners_m(t));
+        let to_clump = clump::to_centre_in_space(rest_root, fibre.shape.clump.spacing_mm * 1e-3, 0);
+        let to_clump = posed_from_rest * to_clump;
         let to_clump = Vec2::new(to_clump.dot(x_axis), to_clump.dot(y_axis));
         let (length_m, brightness) = individual(fibre, fibre.length_m * length, key);
         course(fibre, length_m, mix1(corners.map(|v| fields.clump[v])), to_clump, key, &mut points);

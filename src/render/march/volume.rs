@@ -49,6 +49,8 @@ const TABLE: usize = 64;
 pub struct Volume<'a> {
     shell: Shell<'a>,
     normals: &'a [Vec3],
+    /// Normals of the rest pose, where the skin is in another.
+    rest_normals: Option<Vec<Vec3>>,
     resolution: Resolution,
     subdivisions: Vec<u8>,
     density: Vec<OnceLock<Block>>,
@@ -81,6 +83,7 @@ impl<'a> Volume<'a> {
         Some(Self {
             shell: Shell::new(pelt.skin, pelt.fields, undercoat),
             normals,
+            rest_normals: pelt.skin.rest_m.as_ref().map(|_| pelt.skin.at_rest().smooth_normals()),
             resolution,
             subdivisions,
             density: cells(triangles),
@@ -133,13 +136,16 @@ impl<'a> Volume<'a> {
     }
 
     fn fill(&self, triangle: u32) -> Block {
-        let prism = self.shell.prism(triangle);
+        // Patterns keep to the rest pose, so that they do not swim under a moving skin.
+        let foot_m = self.shell.skin.rest_corners_m(triangle as usize);
+        let normals = self.rest_normals.as_deref().unwrap_or(self.normals);
         let d = u32::from(self.subdivisions[triangle as usize]);
         let clump = &self.shell.fields.clump;
         Block::fill(d, self.resolution.layers, |b| {
-            let root_m = prism.foot_m[0] * b.x + prism.foot_m[1] * b.y + prism.foot_m[2] * b.z;
+            let root_m = foot_m[0] * b.x + foot_m[1] * b.y + foot_m[2] * b.z;
             let factor = self.shell.scalar(clump, triangle, b);
-            let column = self.shell.undercoat.column(root_m, self.normal(triangle, b), factor);
+            let normal = self.shell.vector(normals, triangle, b).normalize_or(Vec3::Y);
+            let column = self.shell.undercoat.column(root_m, normal, factor);
             move |t| column.crowding(t)
         })
     }
@@ -164,7 +170,7 @@ impl<'a> Volume<'a> {
         length_m: f32,
         direction: Vec3,
     ) -> Step {
-        let middle = place.moved(rates, 0.5 * length_m);
+        let middle = place.moved(rates, 0.5 * length_m).inside();
         let b = middle.barycentric();
         let undercoat = &self.shell.undercoat;
         let up_m = j.up_m.length();
@@ -174,7 +180,7 @@ impl<'a> Volume<'a> {
             * self.shell.scalar(&self.shell.fields.density, triangle, b)
             * self.crowding(triangle, b, middle.t);
         // Hairs per volume and unit of t: on the triangle stand per_m2 · 2A/2 of them, in a volume of |det|/2 per t.
-        let per_volume = per_m2 * self.shell.skin.area_vector_m2(triangle as usize).length() / j.determinant.abs();
+        let per_volume = 2.0 * per_m2 * self.shell.skin.rest_area_m2(triangle as usize) / j.determinant.abs();
         // Not √(1 − cos²), which rounds to a thousandth where a ray runs along the hair.
         let sine = undercoat.mean_sine(hair.cross(direction).length());
         let length_per_volume = per_volume * up_m * undercoat.stretch * table(&self.reaching, middle.t);
