@@ -7,17 +7,20 @@ use crate::asset::strands;
 use crate::bake::picture::{Grown, Only, Scene, studio};
 use crate::data::camera::Camera;
 use crate::error::{Error, Result};
-use crate::math::Vec3;
+use crate::math::{DVec3, Vec2, Vec3};
 use crate::preset::Preset;
+use crate::render::defocus::{self, Lens};
 use crate::render::develop::{Development, develop};
 use crate::render::pelt::Lighting;
-use crate::render::picture::{Picture, Settings};
+use crate::render::picture::{Picture, Row, Settings};
 use crate::render::resolve::Blending;
+use crate::render::view::View;
 use crate::shade::environment::Environment;
 use crate::viewer;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// Lights that stand for an environment map (Andersen et al. 2016 §5).
 const ENVIRONMENT_LIGHTS: usize = 16;
@@ -30,6 +33,8 @@ Examples:
   furrier render bunny.glb -o bunny.exr --preset rabbit --quality final --size 1920x1137
   furrier render bunny.glb -o lit.png --env studio.hdr --light dir:-1,-2,-1:5,5,5 --orbit 60,20,1
   furrier render bunny.glb -o guard.png --only guard --report guard.json
+  furrier render bunny.glb -o close.png --orbit 30,15,0.4 --f-number 2.8
+  furrier render sample:creature -o walk.png --pose walk@0.25
   furrier render bunny.glb -o bunny.png --export-strands bunny.usda
 
 An .exr holds every layer: radiance, alpha, distance, normal, tangent, albedo, and the parts of guard hair and undercoat.")]
@@ -81,12 +86,21 @@ pub struct Render {
     /// Blend undercoat as one fragment per ray, faded by hair behind it, with this attenuation in 1/m
     #[arg(long, value_name = "PER_M")]
     simplified: Option<f32>,
+    /// Give the camera a lens: the f-number on 35 mm film; without, everything is sharp
+    #[arg(long, value_name = "N")]
+    f_number: Option<f32>,
+    /// The distance that is sharp, m from the eye along its line of sight [default: what stands in the middle]
+    #[arg(long, value_name = "M", requires = "f_number")]
+    focus: Option<f32>,
     /// Stops of exposure, for a .png
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_hyphen_values = true)]
     exposure: f32,
     /// Decides all that is random
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Take the pose of an animation, by name or number, at a time into it
+    #[arg(long, value_name = "ANIMATION@SECONDS")]
+    pose: Option<String>,
     /// Write the guard hairs to this file, as curves in the input's units; undercoat is a volume and has none
     #[arg(long, value_name = "FILE.usda|.hair")]
     export_strands: Option<PathBuf>,
@@ -141,7 +155,9 @@ impl Render {
         grown.notes.iter().for_each(|note| console.note(note));
         let camera = self.camera(&grown, size)?;
         let lighting = self.lighting(&camera)?;
-        let picture = grown.draw(&lighting, &camera, &self.settings_of(size))?;
+        self.check_lens()?;
+        let mut picture = grown.draw(&lighting, &camera, &self.settings_of(size))?;
+        self.defocus(&mut picture, &camera, &grown)?;
         if kind == "exr" {
             output::bytes(&self.output, &crate::render::exr::encode(&picture.film)?)?;
         } else {
@@ -171,6 +187,7 @@ impl Render {
             materials: self.materials.clone(),
             units: self.units.units(),
             seed: self.seed,
+            pose: self.pose.as_deref().map(pose).transpose()?,
             only: match self.only {
                 Hair::Guard => Only::Guard,
                 Hair::Undercoat => Only::Undercoat,
@@ -211,6 +228,36 @@ impl Render {
         Ok(lighting)
     }
 
+    fn check_lens(&self) -> Result<()> {
+        let refuse = |what: &str, field: &str, found: f32, expected: &str| {
+            Err(Error::usage(what).with_field(field).with_found(found).with_expected(expected))
+        };
+        match (self.f_number, self.focus) {
+            (Some(n), _) if !(0.1..=1000.0).contains(&n) => {
+                refuse("there is no such lens", "--f-number", n, "0.1 to 1000")
+            }
+            (_, Some(m)) if !(m > 0.0 && m.is_finite()) => {
+                refuse("nothing can be sharp there", "--focus", m, "a distance above 0")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Depth of field, where the camera has a lens.
+    fn defocus(&self, picture: &mut Picture, camera: &Camera, grown: &Grown) -> Result<()> {
+        let Some(f_number) = self.f_number else { return Ok(()) };
+        let start = Instant::now();
+        let size = [picture.film.width, picture.film.height];
+        let view = View::new(camera, grown.origin_m(), size, Vec2::ZERO)?;
+        let target_m = DVec3::from(camera.eye).distance(DVec3::from(camera.target)) as f32;
+        let focus_m = self.focus.or_else(|| defocus::middle_depth_m(&picture.film, &view)).unwrap_or(target_m);
+        let lens = Lens::of_f_number(f_number, camera.vfov_deg.to_radians() as f32, focus_m);
+        picture.film = defocus::defocus(&picture.film, &view, &lens);
+        let ms = start.elapsed().as_secs_f64() * 1e3;
+        picture.rows.push(Row { name: "depth of field", ms, bytes: 64 * picture.film.alpha.len() });
+        Ok(())
+    }
+
     fn settings_of(&self, size: [usize; 2]) -> Settings {
         let mut settings = match self.quality {
             Quality::Preview => Settings { size, ..Settings::default() },
@@ -221,6 +268,18 @@ impl Render {
         }
         settings
     }
+}
+
+/// Reads `ANIMATION@SECONDS`; the name may hold an @ itself.
+fn pose(text: &str) -> Result<(String, f64)> {
+    let parts = text.rsplit_once('@').and_then(|(name, seconds)| Some((name.to_owned(), seconds.parse().ok()?)));
+    parts.filter(|(_, seconds): &(String, f64)| seconds.is_finite()).ok_or_else(|| {
+        Error::usage("the pose cannot be read")
+            .with_field("--pose")
+            .with_found(text)
+            .with_expected("ANIMATION@SECONDS: an animation's name or number, and a time")
+            .with_hint("`--pose Walk@0.4`, or `--pose 0@0.4` for the first animation")
+    })
 }
 
 /// The rows of Andersen et al. 2016, Table 1.

@@ -4,6 +4,7 @@ pub mod bins;
 pub mod bvh;
 pub mod cast;
 pub mod cone;
+pub mod defocus;
 pub mod develop;
 pub mod exr;
 pub mod flat;
