@@ -9,27 +9,35 @@ use crate::render::view::View;
 /// Appends the knots of one strand.
 pub fn knots(strands: &Strands, strand: usize, view: &View, out: &mut Vec<Knot>) {
     let points = strands.points_of_m(strand);
-    let last = (points.len() - 1) as f32;
+    let last = points.len() - 1;
     for (i, &point) in points.iter().enumerate() {
-        let radius_m = strands.root_radius_m[strand] * strands.profile.radius_factor(i as f32 / last);
-        out.push(knot(view, point, radius_m));
+        let radius_m = strands.root_radius_m[strand] * strands.profile.radius_factor(i as f32 / last as f32);
+        let mut p = view.camera_from_world(point);
+        if p.z <= view.near_m {
+            // The end of a piece that reaches behind the near plane is drawn where it passes it.
+            let before = |other: Vec3| (other.z > view.near_m).then_some(other);
+            let neighbours = [i.saturating_sub(1), (i + 1).min(last)].map(|n| view.camera_from_world(points[n]));
+            p = match neighbours.into_iter().find_map(before) {
+                Some(other) => p.lerp(other, (view.near_m - p.z) / (other.z - p.z)).with_z(view.near_m),
+                None => p,
+            };
+        }
+        out.push(knot(view, p, radius_m));
     }
 }
 
-fn knot(view: &View, point_m: Vec3, radius_m: f32) -> Knot {
-    let p = view.camera_from_world(point_m);
-    if p.z <= view.near_m {
-        return Knot { z_m: p.z, ..Knot::default() };
+fn knot(view: &View, camera_m: Vec3, radius_m: f32) -> Knot {
+    if camera_m.z < view.near_m {
+        return Knot { z_m: camera_m.z, ..Knot::default() };
     }
-    let pixel = view.pixel(p);
-    Knot { x: pixel.x, y: pixel.y, z_m: p.z, half_px: radius_m * view.focal_px / p.z }
+    let pixel = view.pixel(camera_m);
+    Knot { x: pixel.x, y: pixel.y, z_m: camera_m.z, half_px: radius_m * view.focal_px / camera_m.z }
 }
 
-/// What the piece between two knots may touch. Pieces that reach behind the near plane are left out: they are closer to
-/// the eye than a ten thousandth of the picture's distance.
+/// What the piece between two knots may touch; nothing where both lie behind the near plane or on it.
 pub fn reach(view: &View, a: &Knot, b: &Knot) -> Reach {
     let mut reach = Reach::NOTHING;
-    if a.z_m > view.near_m && b.z_m > view.near_m {
+    if a.z_m.min(b.z_m) >= view.near_m && a.z_m.max(b.z_m) > view.near_m {
         for k in [a, b] {
             reach.add(k.x, k.y, k.half_px * std::f32::consts::SQRT_2);
         }
