@@ -14,6 +14,7 @@ pub mod math;
 pub mod metrics;
 pub mod preset;
 pub mod render;
+pub mod report;
 pub mod runtime;
 pub mod shade;
 pub mod viewer;

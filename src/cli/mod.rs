@@ -10,6 +10,7 @@ mod output;
 mod presets;
 mod progress;
 mod render;
+mod report;
 mod view;
 
 use crate::error::{Kind, Result};
@@ -39,6 +40,7 @@ struct Cli {
 enum Command {
     Bake(bake::Bake),
     Render(render::Render),
+    Report(report::Report),
     View(view::View),
     Inspect(inspect::Inspect),
     Compare(compare::Compare),
@@ -90,6 +92,7 @@ impl Command {
         match self {
             Self::Bake(command) => command.run(console),
             Self::Render(command) => command.run(console),
+            Self::Report(command) => command.run(console),
             Self::View(command) => command.run(console),
             Self::Compare(command) => command.run(console),
             Self::Inspect(command) => command.run(console),

@@ -26,9 +26,17 @@ pub fn check(path: &Path, others: &[&Path]) -> Result<()> {
 /// # Errors
 /// Where the file cannot be written.
 pub fn json<T: Serialize>(path: &Path, value: &T) -> Result<()> {
+    write::whole(path, &json_bytes(path, value)?, &[])
+}
+
+/// `value` as the JSON that goes to `path`.
+///
+/// # Errors
+/// Where it cannot be encoded.
+pub fn json_bytes<T: Serialize>(path: &Path, value: &T) -> Result<Vec<u8>> {
     let mut text = serde_json::to_vec_pretty(value).map_err(|e| unwritable(path, &e))?;
     text.push(b'\n');
-    write::whole(path, &text, &[])
+    Ok(text)
 }
 
 /// Writes an RGBA8 image as PNG.

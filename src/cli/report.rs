@@ -1,0 +1,129 @@
+//! `furrier report`.
+
+use super::bake::UnitName;
+use super::console::Console;
+use super::output;
+use crate::asset::write;
+use crate::bake::picture::{Grown, Only, Scene};
+use crate::error::{Error, Result};
+use crate::preset::Preset;
+use crate::report::{plot, render, table};
+use crate::viewer;
+use clap::{Args, Subcommand};
+use std::path::{Path, PathBuf};
+
+/// Sweep settings: error against time, as JSON, CSV and a plot
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  furrier report render sample:hat -o hat.json --preset mink
+  furrier report render bunny.glb -o bunny.json --size 512x512 --repeats 3")]
+pub struct Report {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    Render(Render),
+}
+
+/// Draw a scene with every control of `render` changed in turn
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  furrier report render sample:hat -o hat.json --preset mink
+
+Beside hat.json stand hat.csv and hat.svg. Errors are against the finest setting; times are of drawing alone.")]
+struct Render {
+    /// A glTF or OBJ file, or sample:NAME
+    input: String,
+    /// The report to write; a .csv and a .svg go beside it
+    #[arg(short, long, value_name = "OUT.json")]
+    output: PathBuf,
+    /// A built-in preset or a TOML file
+    #[arg(long, value_name = "NAME|FILE", default_value = "mink")]
+    preset: String,
+    /// Change a value of the preset; repeatable
+    #[arg(long = "set", value_name = "table.key=value")]
+    settings: Vec<String>,
+    /// What a unit of the file means
+    #[arg(long, value_enum, default_value = "auto")]
+    units: UnitName,
+    /// Pixels
+    #[arg(long, value_name = "WxH", default_value = "256x256")]
+    size: String,
+    /// Degrees around and above, and a factor on the distance at which the asset just fits
+    #[arg(long, value_name = "AZ,EL,DIST", allow_hyphen_values = true, default_value = "35,20,1")]
+    orbit: String,
+    /// Runs of each setting; the quickest counts
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=100))]
+    repeats: u32,
+    /// Decides all that is random
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+}
+
+impl Report {
+    /// Sweeps and writes.
+    ///
+    /// # Errors
+    /// Where the input or an option cannot be used, or a file not written.
+    pub fn run(self, console: &Console) -> Result<()> {
+        match self.what {
+            What::Render(render) => render.run(console),
+        }
+    }
+}
+
+impl Render {
+    fn run(self, console: &Console) -> Result<()> {
+        if self.output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("json")) {
+            return Err(Error::usage("the report's kind is unknown")
+                .with_field("--output")
+                .with_found(self.output.display())
+                .with_expected("a name that ends in .json"));
+        }
+        let [csv, svg] = ["csv", "svg"].map(|kind| self.output.with_extension(kind));
+        for file in [&self.output, &csv, &svg] {
+            output::check(file, &[Path::new(&self.input)])?;
+        }
+        let size = super::view::size(&self.size)?.map(|n| n as usize);
+        let grown = Grown::new(&Scene {
+            input: self.input.clone(),
+            preset: Preset::load(&self.preset)?.with_settings(&self.settings)?,
+            materials: Vec::new(),
+            units: self.units.units(),
+            seed: self.seed,
+            only: Only::Hybrid,
+            pose: None,
+        })?;
+        grown.notes.iter().for_each(|note| console.note(note));
+        let [azimuth, elevation, distance] = viewer::parse_triple(&self.orbit, "--orbit")?.to_array();
+        let options = render::Options {
+            input: self.input.clone(),
+            size,
+            camera: grown.camera(azimuth, elevation, distance, size),
+            repeats: self.repeats,
+        };
+        let sweep = render::sweep(&grown, &options, &mut |what| tracing::info!("{what}"))?;
+        let title = format!("{}, {}, {} × {}, {}", self.input, self.preset, size[0], size[1], sweep.device);
+        let error = format!("FLIP against {}", sweep.yardstick.name);
+        let plot = plot::svg(&title, &error, &sweep.points);
+        let json = output::json_bytes(&self.output, &sweep)?;
+        let files =
+            [(csv, table::csv(&sweep.points).into_bytes()), (svg, plot.into_bytes()), (self.output.clone(), json)];
+        let files: Vec<(PathBuf, &[u8])> = files.iter().map(|(path, bytes)| (path.clone(), bytes.as_slice())).collect();
+        write::all(&files, &[PathBuf::from(&self.input)])?;
+        console.result(&sweep, |out| {
+            writeln!(out, "{:>9} {:>8} {:>8} {:>8}  setting", "ms", "FLIP", "relMSE", "bias")?;
+            for p in &sweep.points {
+                let mark = if p.pareto { "*" } else { " " };
+                let of = if p.defaults.is_some() { String::new() } else { format!(" = {}", p.value) };
+                let (ms, flip, rel_mse, bias) = (p.ms, p.flip, p.rel_mse, p.bias * 100.0);
+                writeln!(out, "{ms:9.1} {flip:8.4} {rel_mse:8.5} {bias:+7.2}% {mark} {}{of}", p.sweep)?;
+            }
+            writeln!(out, "* nothing is both quicker and closer; {}", self.output.display())
+        })
+    }
+}

@@ -1,0 +1,169 @@
+//! The hybrid renderer's settings against what they cost.
+
+use super::{Point, mark_front};
+use crate::bake::picture::{Grown, studio};
+use crate::data::camera::Camera;
+use crate::data::film::Film;
+use crate::error::Result;
+use crate::metrics::compare::{Light, compare};
+use crate::metrics::timing::SCHEMA_VERSION;
+use crate::render::march::Stepping;
+use crate::render::march::volume::Resolution;
+use crate::render::picture::{Picture, Settings};
+use crate::render::resolve::Blending;
+use serde::Serialize;
+
+/// What errors are measured against, and its own noise.
+#[derive(Clone, Debug, Serialize)]
+pub struct Yardstick {
+    /// What it is.
+    pub name: &'static str,
+    /// How long it took, ms.
+    pub ms: f64,
+}
+
+/// Everything that a sweep found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Sweep {
+    /// Version of the report files' layout.
+    pub schema_version: u32,
+    /// What was drawn.
+    pub input: String,
+    /// Pixels.
+    pub size: [usize; 2],
+    /// What computed, and on how many threads.
+    pub device: String,
+    /// Of how many runs the quickest counts.
+    pub repeats: u32,
+    /// What errors are measured against.
+    pub yardstick: Yardstick,
+    /// One per way to draw it; the defaults of preview and final first.
+    pub points: Vec<Point>,
+}
+
+/// How to sweep.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// What the report calls the scene.
+    pub input: String,
+    /// Pixels.
+    pub size: [usize; 2],
+    /// Where from.
+    pub camera: Camera,
+    /// Runs per point, at least 1; the quickest counts.
+    pub repeats: u32,
+}
+
+/// A way to draw: what was changed from which defaults, to what.
+struct Way {
+    sweep: String,
+    value: f64,
+    settings: Settings,
+    defaults: Option<&'static str>,
+}
+
+type Change = fn(&mut Settings, f64);
+
+/// Every control of the renderer and the values it is tried at.
+const CONTROLS: [(&str, &[f64], Change); 7] = [
+    ("optical depth of a step", &[0.05, 0.1, 0.5, 1.0, 2.0], |s, v| s.stepping.depth = v as f32),
+    ("length of a step, layers", &[0.5, 1.0, 4.0, 8.0], |s, v| s.stepping.layers = v as f32),
+    ("most subdivisions d", &[0.0, 2.0, 4.0, 5.0, 6.0, 8.0], |s, v| s.resolution.most_subdivisions = v as u32),
+    ("edge of a sub-element, px", &[0.75, 3.0, 6.0, 12.0], |s, v| s.resolution.subelement_px = v as f32),
+    ("layers", &[4.0, 8.0, 32.0, 64.0], |s, v| s.resolution.layers = v as u32),
+    ("virtual fragments", &[1.0, 4.0, 8.0, 16.0, 30.0], |s, v| s.blending = Blending::Virtual { fragments: v as u32 }),
+    ("supersampling", &[1.0, 2.0, 4.0, 8.0], |s, v| s.passes = v as usize),
+];
+
+/// Draws a scene in every way and compares each picture with the yardstick: the finest setting.
+///
+/// # Errors
+/// As [`Grown::draw`]; `progress` is told what is being drawn.
+pub fn sweep(grown: &Grown, options: &Options, progress: &mut dyn FnMut(&str)) -> Result<Sweep> {
+    let lighting = studio(&options.camera);
+    let draw = |settings: &Settings| grown.draw(&lighting, &options.camera, settings);
+    progress("yardstick");
+    let finest = draw(&finest(options.size))?;
+    let truth = Light::from(&finest.film);
+    let mut points = Vec::new();
+    for way in ways(options.size) {
+        progress(&format!("{} = {}", way.sweep, way.value));
+        let mut best: Option<Picture> = None;
+        for _ in 0..options.repeats.max(1) {
+            let picture = draw(&way.settings)?;
+            if best.as_ref().is_none_or(|best| ms(&picture) < ms(best)) {
+                best = Some(picture);
+            }
+        }
+        points.extend(best.map(|picture| point(&way, &picture, &truth)).transpose()?);
+    }
+    mark_front(&mut points);
+    Ok(Sweep {
+        schema_version: SCHEMA_VERSION,
+        input: options.input.clone(),
+        size: options.size,
+        device: format!("cpu, {} threads", rayon::current_num_threads()),
+        repeats: options.repeats.max(1),
+        yardstick: Yardstick { name: "the finest setting", ms: ms(&finest) },
+        points,
+    })
+}
+
+/// Time of all of a picture's steps, ms.
+fn ms(picture: &Picture) -> f64 {
+    picture.rows.iter().map(|row| row.ms).sum()
+}
+
+fn point(way: &Way, picture: &Picture, truth: &Light) -> Result<Point> {
+    let film: &Film = &picture.film;
+    let difference = compare(truth, &Light::from(film))?;
+    Ok(Point {
+        sweep: way.sweep.clone(),
+        value: way.value,
+        ms: ms(picture),
+        bytes: picture.rows.iter().map(|row| row.bytes as u64).max().unwrap_or(0),
+        flip: difference.flip,
+        flip_p95: difference.flip_p95,
+        rel_mse: difference.rel_mse,
+        bias: difference.bias,
+        steps: picture.counts.steps,
+        fragments: picture.counts.fragments,
+        pareto: false,
+        defaults: way.defaults,
+    })
+}
+
+/// Twice as fine in every control as the finest that is tried, where that can be paid for.
+fn finest(size: [usize; 2]) -> Settings {
+    Settings {
+        passes: 32,
+        blending: Blending::Virtual { fragments: 64 },
+        stepping: Stepping { depth: 0.04, layers: 0.5 },
+        resolution: Resolution { layers: 64, subelement_px: 0.5, most_subdivisions: 8, ..Resolution::default() },
+        ..Settings { size, ..Settings::default() }
+    }
+}
+
+/// The defaults, then each with one control changed at a time.
+fn ways(size: [usize; 2]) -> Vec<Way> {
+    let defaults = [("preview", Settings { size, ..Settings::default() }), ("final", Settings::best(size))];
+    let whole = |(name, settings): &(&'static str, Settings)| Way {
+        sweep: (*name).to_owned(),
+        value: 0.0,
+        settings: *settings,
+        defaults: Some(name),
+    };
+    let mut ways: Vec<Way> = defaults.iter().map(whole).collect();
+    for (name, settings) in defaults {
+        for (control, values, change) in CONTROLS {
+            for &value in values {
+                let mut changed = settings;
+                change(&mut changed, value);
+                if changed != settings {
+                    ways.push(Way { sweep: format!("{name}: {control}"), value, settings: changed, defaults: None });
+                }
+            }
+        }
+    }
+    ways
+}
