@@ -161,3 +161,34 @@ fn coverage_and_structure_tell_a_stack_that_is_off() {
         assert_eq!(crate::accuracy::fault(&[good, faulty]), Some(faulty));
     }
 }
+
+#[test]
+fn films_that_no_renderer_may_give_are_named() {
+    use crate::hard_renders::fault;
+    let plain = || crate::defocus::film(|_, _| Some((Vec3::splat(0.5), 1.0)));
+    assert_eq!(fault(&plain()), None);
+    let faults: [fn(&mut furrier::data::film::Film); 5] = [
+        |film| film.radiance[7].y = f32::NAN,
+        |film| film.radiance[7].x = -1e-3,
+        |film| film.alpha[7] = 1.1,
+        |film| film.depth_m[7] = f32::INFINITY,
+        |film| (film.guard[7], film.undercoat[7]) = (0.6, 0.6),
+    ];
+    for plant in faults {
+        let mut film = plain();
+        plant(&mut film);
+        assert!(fault(&film).is_some_and(|fault| fault.starts_with("pixel 7:")));
+    }
+}
+
+#[test]
+fn a_leak_of_a_hundredth_and_a_twinkle_of_a_tenth_show() {
+    let mut film = crate::defocus::film(|_, _| Some((Vec3::splat(0.5), 1.0)));
+    assert_eq!(crate::defocus::departure(&film, Vec3::splat(0.5), |_, _| true), 0.0);
+    film.alpha[30 * crate::defocus::SIZE[0] + 30] = 0.99;
+    assert!(crate::defocus::departure(&film, Vec3::splat(0.5), |_, _| true) > 5e-3);
+    let mut twinkling = vec![film.clone(), film];
+    assert!(crate::posed::change(&twinkling) < 1e-6);
+    twinkling[1].radiance.iter_mut().step_by(5).for_each(|c| *c *= 1.1);
+    assert!(crate::posed::change(&twinkling) > crate::posed::NOISE);
+}
