@@ -4,6 +4,8 @@ use crate::architecture::breaches;
 use crate::docs::first_difference;
 use crate::laws::shading::furnace;
 use crate::metrics::{changed, picture};
+use crate::pelt_twins::share_alike;
+use furrier::data::image::Image8;
 use furrier::math::Vec3;
 use furrier::metrics::compare::compare;
 use furrier::shade::kajiya_kay::KajiyaKay;
@@ -191,4 +193,17 @@ fn a_leak_of_a_hundredth_and_a_twinkle_of_a_tenth_show() {
     assert!(crate::posed::change(&twinkling) < 1e-6);
     twinkling[1].radiance.iter_mut().step_by(5).for_each(|c| *c *= 1.1);
     assert!(crate::posed::change(&twinkling) > crate::posed::NOISE);
+}
+
+#[test]
+fn twins_tell_two_pixels_in_a_thousand() {
+    let mut a = Image8::new(40, 50, 4);
+    a.pixels.fill(100);
+    let mut b = a.clone();
+    b.pixels[0] += 1;
+    assert_eq!(share_alike(&a, &b), 1.0);
+    for pixel in [7, 900, 1999] {
+        b.pixels[4 * pixel + 2] += 2;
+    }
+    assert!(share_alike(&a, &b) < 0.999);
 }

@@ -27,6 +27,7 @@ mod meshes;
 mod metrics;
 mod outputs;
 mod patch;
+mod pelt_twins;
 mod pelts;
 mod posed;
 mod poses;

@@ -1,6 +1,11 @@
 //! Every shader parses and validates, and its structs lie in memory as Rust's do. Needs no adapter.
 
 use furrier::gpu::{Source, compose};
+use furrier::render::gpu::kernels;
+use furrier::render::gpu::layout::{
+    BlocksUniform, InsideItem, KindUniform, LightItem, LobeUniform, SceneUniform, StrandItem, StretchItem,
+    TriangleItem, VertexItem, ViewUniform as CameraUniform,
+};
 use furrier::runtime::gpu::layout::{CoatVertex, FinInstance, LightUniform, Mip, SkinVertex, TileUniform, ViewUniform};
 use furrier::runtime::gpu::pipelines::{FIN, RESOLVE, SHARED, SHELL, SKIN};
 use naga::proc::Layouter;
@@ -37,6 +42,10 @@ fn module(source: Source) -> Module {
     compose(source, &SHARED).unwrap()
 }
 
+fn kernel(source: Source) -> Module {
+    compose(source, &kernels::SHARED).unwrap()
+}
+
 #[test]
 fn every_shader_is_valid() {
     for source in [SKIN, SHELL, FIN, RESOLVE] {
@@ -50,11 +59,22 @@ fn every_shader_is_valid() {
 }
 
 #[test]
+fn every_kernel_is_valid() {
+    for source in kernels::ALL {
+        let module = kernel(source);
+        let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
+        validator.validate(&module).unwrap_or_else(|error| panic!("{}: {error:?}", source.path));
+        assert_eq!(module.entry_points.len(), 1, "{}", source.path);
+    }
+}
+
+#[test]
 fn every_shader_file_is_tested() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
-    let tested: Vec<_> =
-        [SKIN, SHELL, FIN, RESOLVE].iter().chain(&SHARED).map(|source| source.path.to_owned()).collect();
-    for kind in ["runtime", "shared"] {
+    let drawn = [SKIN, SHELL, FIN, RESOLVE];
+    let all = drawn.iter().chain(&SHARED).chain(&kernels::ALL).chain(&kernels::SHARED);
+    let tested: Vec<_> = all.map(|source| source.path.to_owned()).collect();
+    for kind in ["runtime", "render", "shared"] {
         for entry in std::fs::read_dir(folder.join(kind)).unwrap() {
             let path = format!("{kind}/{}", entry.unwrap().file_name().to_string_lossy());
             assert!(tested.contains(&path), "shaders/{path} is not among the tested ones");
@@ -72,6 +92,113 @@ fn structs_lie_as_in_rust() {
         (&shell, "Mip", in_rust!(Mip { gains, inverse_scale_m })),
         (&shell, "CoatVertex", in_rust!(CoatVertex { position_m, u, offset_m, v, normal, tint })),
         (&fin, "FinEdge", in_rust!(FinInstance { ends, u, thickness })),
+    ] {
+        assert_eq!(in_shader(module, name), Some(rust), "{name}");
+    }
+}
+
+#[test]
+fn structs_of_kernels_lie_as_in_rust() {
+    let (strands, march, density) = (kernel(kernels::STRANDS), kernel(kernels::MARCH), kernel(kernels::DENSITY));
+    for (module, name, rust) in [
+        (&strands, "Kind", in_rust!(KindUniform { area_per_m, height_m, variation, unused })),
+        (&strands, "Lobe", in_rust!(LobeUniform { albedo, shift_rad, scale, unused })),
+        (
+            &strands,
+            "Scene",
+            in_rust!(SceneUniform {
+                triangle_count,
+                layers,
+                strand_count,
+                points_per_strand,
+                light_count,
+                undercoat_light_count,
+                face_count,
+                inside_count,
+                density_per_square_m,
+                diameter_m,
+                stretch,
+                slope,
+                pattern_amplitude,
+                pattern_wavelength_m,
+                pattern_jitter,
+                clump_spacing_m,
+                clump_strength,
+                step_depth,
+                step_layers,
+                undercoat_albedo,
+                undercoat_diffuse,
+                undercoat_specular,
+                undercoat_exponent,
+                groups,
+                ambient,
+                guard_albedo,
+                skin_factor,
+                taper,
+                undercoat_ramp,
+                guard_ramp,
+                guard_kind,
+                undercoat_kind,
+                tip_transparency,
+                tip_exponent,
+                tt_azimuth_scale,
+                tt_norm,
+                glint,
+                glint_angle_rad,
+                glint_scale,
+                glint_norm,
+                surround_norm,
+                guard_diffuse,
+                attenuation_per_m,
+                unused,
+                lobes
+            }),
+        ),
+        (
+            &strands,
+            "Triangle",
+            in_rust!(TriangleItem { corners, density_splits, beyond, shadow_splits, density_at, shadow_at, rest_area }),
+        ),
+        (
+            &strands,
+            "Vertex",
+            in_rust!(VertexItem {
+                position_m,
+                density,
+                offset_m,
+                length,
+                normal,
+                clump,
+                lean,
+                tint,
+                rest_m,
+                rest_normal
+            }),
+        ),
+        (&strands, "Light", in_rust!(LightItem { to_light, irradiance })),
+        (&strands, "Strand", in_rust!(StrandItem { tint, id, b, triangle, root_radius_m })),
+        (
+            &strands,
+            "View",
+            in_rust!(CameraUniform {
+                eye_m,
+                focal_px,
+                right,
+                near_m,
+                up,
+                pass_index,
+                forward,
+                most_starts,
+                centre_px,
+                size,
+                rows,
+                most_fragments,
+                most_stretches
+            }),
+        ),
+        (&march, "Inside", in_rust!(InsideItem { b, t, triangle })),
+        (&march, "Stretch", in_rust!(StretchItem { radiance, from_m, to_m, depth, faces, next })),
+        (&density, "Blocks", in_rust!(BlocksUniform { columns, count })),
     ] {
         assert_eq!(in_shader(module, name), Some(rust), "{name}");
     }

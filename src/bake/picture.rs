@@ -11,6 +11,7 @@ use crate::fur::groom::fibre::Fibre;
 use crate::fur::grow;
 use crate::math::{DVec3, Vec3};
 use crate::preset::Preset;
+use crate::render::device::{self, Device, Drawn};
 use crate::render::pelt::{Hair, Lighting, Pelt};
 use crate::render::picture::{Picture, Settings, draw};
 use std::f32::consts::PI;
@@ -132,12 +133,20 @@ impl Grown {
         }
     }
 
-    /// Renders a picture.
+    /// Renders a picture on the CPU.
     ///
     /// # Errors
     /// As [`draw`].
     pub fn draw(&self, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Picture> {
         draw(&self.pelt(), lighting, camera, settings)
+    }
+
+    /// Renders a picture on a device.
+    ///
+    /// # Errors
+    /// As [`device::draw`].
+    pub fn draw_on(&self, device: &Device, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Drawn> {
+        device::draw(device, &self.pelt(), lighting, camera, settings)
     }
 
     /// A camera at an azimuth and elevation that frames skin and hair; `distance` 1 fills the picture's height or width.

@@ -11,6 +11,7 @@ use crate::math::{DVec3, Vec2, Vec3};
 use crate::preset::Preset;
 use crate::render::defocus::{self, Lens};
 use crate::render::develop::{Development, develop};
+use crate::render::device::{Device, Drawn};
 use crate::render::pelt::Lighting;
 use crate::render::picture::{Picture, Row, Settings};
 use crate::render::resolve::Blending;
@@ -77,6 +78,9 @@ pub struct Render {
     /// Light from everywhere, radiance in linear RGB
     #[arg(long, value_name = "R,G,B")]
     ambient: Option<String>,
+    /// What draws: a hardware GPU where there is one, the CPU, or a GPU, software ones too, by a part of its name
+    #[arg(long, value_name = "auto|cpu|gpu[:NAME]", default_value = "auto")]
+    device: String,
     /// How much work to spend
     #[arg(long, value_enum, default_value = "preview")]
     quality: Quality,
@@ -151,13 +155,16 @@ impl Render {
             output::check(file, &others)?;
         }
         let size = super::view::size(&self.size)?.map(|n| n as usize);
+        let device = self.device.parse::<Device>()?;
         let grown = Grown::new(&self.scene()?)?;
         grown.notes.iter().for_each(|note| console.note(note));
         let camera = self.camera(&grown, size)?;
         let lighting = self.lighting(&camera)?;
         self.check_lens()?;
-        let mut picture = grown.draw(&lighting, &camera, &self.settings_of(size))?;
-        self.defocus(&mut picture, &camera, &grown)?;
+        let mut drawn = grown.draw_on(&device, &lighting, &camera, &self.settings_of(size))?;
+        drawn.notes.iter().for_each(|note| console.warning(note));
+        self.defocus(&mut drawn.picture, &camera, &grown)?;
+        let picture = &drawn.picture;
         if kind == "exr" {
             output::bytes(&self.output, &crate::render::exr::encode(&picture.film)?)?;
         } else {
@@ -169,14 +176,15 @@ impl Render {
             let name = name.strip_prefix("sample:").unwrap_or(name);
             output::bytes(file, &strands::encode(&grown.export(name), format)?)?;
         }
-        let report = report(&picture);
+        let report = report(&drawn);
         if let Some(file) = &self.report {
             output::json(file, &report)?;
         }
         console.result(&report, |out| {
             let ms = report["total_ms"].as_f64().unwrap_or(0.0);
             let [width, height] = size;
-            writeln!(out, "{}: {width} × {height}, drawn in {:.1} s", self.output.display(), ms * 1e-3)
+            let device = &drawn.device;
+            writeln!(out, "{}: {width} × {height}, drawn by {device} in {:.1} s", self.output.display(), ms * 1e-3)
         })
     }
 
@@ -283,7 +291,8 @@ fn pose(text: &str) -> Result<(String, f64)> {
 }
 
 /// The rows of Andersen et al. 2016, Table 1.
-fn report(picture: &Picture) -> Value {
+fn report(drawn: &Drawn) -> Value {
+    let picture = &drawn.picture;
     let rows: Vec<Value> =
         picture.rows.iter().map(|row| json!({ "name": row.name, "ms": row.ms, "bytes": row.bytes })).collect();
     let counts = &picture.counts;
@@ -291,7 +300,8 @@ fn report(picture: &Picture) -> Value {
         "schema_version": 1,
         "steps": rows,
         "total_ms": picture.rows.iter().map(|row| row.ms).sum::<f64>(),
-        "device": "cpu",
+        "device": drawn.device,
+        "notes": drawn.notes,
         "counts": {
             "strands": counts.strands,
             "pieces": counts.pieces,

@@ -61,11 +61,14 @@ pub struct Undercoat {
     pub stretch: f32,
     /// Standard deviation of each hair's slope against the mean.
     pub slope: f32,
-    pattern: Pattern,
+    /// Pattern of the density.
+    pub pattern: Pattern,
     mean: f32,
     spread: f32,
-    clump_spacing_m: f32,
-    clump_strength: f32,
+    /// Mean distance between clumps, m.
+    pub clump_spacing_m: f32,
+    /// How far tips move towards their clump's centre, in [0, 1].
+    pub clump_strength: f32,
 }
 
 impl Undercoat {
@@ -100,7 +103,8 @@ impl Undercoat {
         0.5 * libm::erfcf((t - self.mean) / (self.spread * std::f32::consts::SQRT_2))
     }
 
-    fn wavelength_m(&self) -> f32 {
+    /// Distance between the pattern's features, m.
+    pub fn wavelength_m(&self) -> f32 {
         self.pattern.wavelength * self.clump_spacing_m
     }
 

@@ -45,12 +45,21 @@ impl Gpu {
         usage: wgpu::BufferUsages,
     ) -> wgpu::Buffer {
         let bytes: &[u8] = bytemuck::cast_slice(contents);
-        let placeholder = [0_u8; 256];
-        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        // Filled by the queue: a buffer mapped at its creation would end the program where the device is lost.
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
-            contents: if bytes.is_empty() { &placeholder } else { bytes },
-            usage,
-        })
+            size: bytes.len().max(256).next_multiple_of(4) as u64,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let (whole, rest) = bytes.split_at(bytes.len() / 4 * 4);
+        self.queue.write_buffer(&buffer, 0, whole);
+        if !rest.is_empty() {
+            let mut last = [0; 4];
+            last[..rest.len()].copy_from_slice(rest);
+            self.queue.write_buffer(&buffer, whole.len() as u64, &last);
+        }
+        buffer
     }
 
     /// A 2D array texture of `images[mip][layer]`, four channels or one, filtered as `coding` says.

@@ -3,11 +3,13 @@
 //! Shaders are composed by name (`shader`), textures and buffers made and read back (`memory`), passes timed (`timer`).
 
 mod adapter;
+mod compute;
 mod memory;
 mod shader;
 mod timer;
 
 pub use adapter::{Adapter, AdapterKind, Choice, adapters, missing_adapter_hint};
+pub use compute::{Binding, Kernel};
 pub use memory::{Coding, TextureArray};
 pub use shader::{Source, compose};
 pub use timer::Timer;

@@ -4,6 +4,7 @@ use super::Gpu;
 use crate::error::{Error, Kind, Result};
 use naga_oil::compose::{ComposableModuleDescriptor, Composer, NagaModuleDescriptor};
 use std::borrow::Cow;
+use wgpu::naga::valid::Capabilities;
 
 /// One WGSL file.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +20,8 @@ pub struct Source {
 /// # Errors
 /// [`Kind::Device`] with the file and the compiler's message.
 pub fn compose(main: Source, shared: &[Source]) -> Result<wgpu::naga::Module> {
-    let mut composer = Composer::default();
+    let capabilities = Capabilities::default() | Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+    let mut composer = Composer::default().with_capabilities(capabilities);
     for source in shared {
         let described =
             ComposableModuleDescriptor { source: source.text, file_path: source.path, ..Default::default() };

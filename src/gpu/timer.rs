@@ -32,6 +32,15 @@ impl Timer {
         })
     }
 
+    /// What compute pass number `pass` writes.
+    pub fn compute_writes(&self, pass: u32) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+        self.queries.as_ref().map(|query_set| wgpu::ComputePassTimestampWrites {
+            query_set,
+            beginning_of_pass_write_index: Some(2 * pass),
+            end_of_pass_write_index: Some(2 * pass + 1),
+        })
+    }
+
     /// Milliseconds of each pass, once the passes were submitted; `None` where the adapter has no clock.
     ///
     /// # Errors

@@ -26,6 +26,11 @@ impl<R: Real> KajiyaKay<R> {
         }
     }
 
+    /// What [`Self::scatter`] is made of: the diffuse part, the factor on the highlight's power, its exponent.
+    pub fn coefficients(&self) -> [R; 3] {
+        [self.diffuse * R::of(1.0 / (PI * PI)), self.specular * self.specular_scale, self.exponent]
+    }
+
     /// S per channel of the hair's colour, 1/sr: (factor of the colour, untinted rest).
     ///
     /// Diffuse is 1/π², since ∫ cos θ dω = π² over the sphere. The highlight cos^p(θ_i + θ_o) holds its albedo at

@@ -57,23 +57,35 @@ impl Default for LobeParameters {
 /// A [`LobeParameters`] with its lobes normalised, ready to evaluate.
 #[derive(Clone, Copy, Debug)]
 pub struct Lobes<R> {
-    lobes: [Prepared<R>; 3],
-    tt_azimuth_scale: R,
-    glint: R,
-    glint_angle_rad: R,
-    glint_scale: R,
-    diffuse: R,
-    surround_norm: R,
-    glint_norm: R,
-    tt_norm: R,
+    /// R, TT and TRT.
+    pub lobes: [Prepared<R>; 3],
+    /// −1 / (2σ²) of TT around the hair.
+    pub tt_azimuth_scale: R,
+    /// Share of TRT in its glints.
+    pub glint: R,
+    /// Angle of the glints from the light's plane, rad.
+    pub glint_angle_rad: R,
+    /// −1 / (2σ²) of a glint around the hair.
+    pub glint_scale: R,
+    /// S of the diffuse part, 1/sr.
+    pub diffuse: R,
+    /// 1 over the integral around the hair of R's and TRT's azimuthal part.
+    pub surround_norm: R,
+    /// The same of the glints.
+    pub glint_norm: R,
+    /// The same of TT.
+    pub tt_norm: R,
 }
 
+/// One lobe along the hair.
 #[derive(Clone, Copy, Debug)]
-struct Prepared<R> {
-    albedo: R,
-    shift_rad: R,
+pub struct Prepared<R> {
+    /// Albedo over the lobe's own integral.
+    pub albedo: R,
+    /// Shift along the hair, rad.
+    pub shift_rad: R,
     /// −1 / (2σ²).
-    scale: R,
+    pub scale: R,
 }
 
 /// S, 1/sr, split by how often the hair's colour tints it.

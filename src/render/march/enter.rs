@@ -5,6 +5,7 @@ use super::volume::Volume;
 use crate::math::Vec3;
 use crate::render::bins::{Bins, Grid};
 use crate::render::flat::{self, Flat};
+use crate::render::shell::Shell;
 use crate::render::shell::prism::Place;
 use crate::render::view::View;
 use rayon::prelude::*;
@@ -52,19 +53,7 @@ impl Entrances {
             })
             .collect();
         let bins = Bins::new(grid, faces.len(), |i| flat::reach(view, &faces[i].camera_m));
-        let around_eye = (0..triangles)
-            .into_par_iter()
-            .filter_map(|triangle| {
-                let prism = shell.prism(triangle);
-                let (low, high) = prism.bounds_m();
-                if view.eye_m.cmplt(low).any() || view.eye_m.cmpgt(high).any() {
-                    return None;
-                }
-                let place = prism.locate(view.eye_m, Place { b: [1.0 / 3.0; 2], t: 0.5 })?;
-                let inside = place.barycentric().min_element() >= 0.0 && (0.0..=1.0).contains(&place.t);
-                inside.then_some((triangle, place))
-            })
-            .collect();
+        let around_eye = around(shell, view.eye_m);
         Self { faces, bins, around_eye }
     }
 
@@ -91,4 +80,21 @@ impl Entrances {
     pub fn bytes(&self) -> usize {
         self.faces.len() * size_of::<Face>() + self.bins.bytes()
     }
+}
+
+/// The prisms that hold a point, and where in them it lies.
+pub fn around(shell: &Shell<'_>, eye_m: Vec3) -> Vec<(u32, Place)> {
+    (0..shell.skin.triangles.len() as u32)
+        .into_par_iter()
+        .filter_map(|triangle| {
+            let prism = shell.prism(triangle);
+            let (low, high) = prism.bounds_m();
+            if eye_m.cmplt(low).any() || eye_m.cmpgt(high).any() {
+                return None;
+            }
+            let place = prism.locate(eye_m, Place { b: [1.0 / 3.0; 2], t: 0.5 })?;
+            let inside = place.barycentric().min_element() >= 0.0 && (0.0..=1.0).contains(&place.t);
+            inside.then_some((triangle, place))
+        })
+        .collect()
 }

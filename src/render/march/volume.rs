@@ -108,6 +108,12 @@ impl<'a> Volume<'a> {
         self.resolution.layers
     }
 
+    /// By height in 64ths of the shell's: the share of hairs that reach it; the hair area above it per skin area, of
+    /// undercoat and of both kinds.
+    pub fn tables(&self) -> [&[f32]; 3] {
+        [&self.reaching, &self.above[0], &self.above[1]]
+    }
+
     /// Bytes of sub-elements filled so far: density and shadow.
     pub fn bytes(&self) -> [usize; 2] {
         [self.density.iter().filter_map(OnceLock::get).map(Block::bytes).sum(), self.shadows.bytes()]
@@ -148,6 +154,11 @@ impl<'a> Volume<'a> {
             let column = self.shell.undercoat.column(root_m, normal, factor);
             move |t| column.crowding(t)
         })
+    }
+
+    /// Subdivisions of the stored density of a triangle.
+    pub fn subdivisions(&self, triangle: u32) -> u32 {
+        u32::from(self.subdivisions[triangle as usize])
     }
 
     /// Subdivisions of the stored shadow of a triangle.

@@ -82,7 +82,7 @@ pub(super) fn add(sum: &mut Film, film: &Film) {
 }
 
 /// Scales sums over passes to means, and depths to means over what was hit.
-pub(super) fn finish(film: &mut Film, scale: f32) {
+pub(in crate::render) fn finish(film: &mut Film, scale: f32) {
     for (depth, &alpha) in film.depth_m.iter_mut().zip(&film.alpha) {
         *depth = if alpha > 0.0 { *depth / alpha } else { 0.0 };
     }

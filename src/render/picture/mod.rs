@@ -14,7 +14,8 @@ use crate::data::film::Film;
 use crate::error::Result;
 use crate::fur::undercoat::Undercoat;
 use crate::math::{Vec2, sampling};
-use film::{add, finish};
+use film::add;
+pub(in crate::render) use film::finish;
 use pass::Pass;
 use std::time::Instant;
 
@@ -112,8 +113,7 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
     let volume = Volume::new(pelt, &normals, lighting.key.to_light, settings.resolution, subdivisions);
     row(&mut picture, "shell", start, volume.as_ref().map_or(0, |v| v.shell().bytes()));
     for pass in 0..passes {
-        let shift = if passes == 1 { Vec2::ZERO } else { sampling::r2(pass as u64, 1 << 63) - 0.5 };
-        let view = View::new(camera, pelt.skin.origin_m, settings.size, shift)?;
+        let view = View::new(camera, pelt.skin.origin_m, settings.size, shift(pass, passes))?;
         let film = Pass::new(pelt, lighting, &normals, volume.as_ref(), view, settings)?.run(&mut picture);
         if pass == 0 { picture.film = film } else { add(&mut picture.film, &film) }
     }
@@ -127,9 +127,14 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
     Ok(picture)
 }
 
+/// Where within the pixels one of several passes looks, from their middles, px.
+pub(in crate::render) fn shift(pass: usize, passes: usize) -> Vec2 {
+    if passes == 1 { Vec2::ZERO } else { sampling::r2(pass as u64, 1 << 63) - 0.5 }
+}
+
 /// Subdivisions d per triangle: sub-elements about as large as asked for on the picture, but no finer than what there is
 /// to see.
-fn subdivisions(pelt: &Pelt<'_>, view: &View, resolution: &Resolution) -> Vec<u8> {
+pub(in crate::render) fn subdivisions(pelt: &Pelt<'_>, view: &View, resolution: &Resolution) -> Vec<u8> {
     let Some(fibre) = pelt.undercoat else { return Vec::new() };
     let detail_m = Undercoat::new(fibre, resolution.pattern).detail_m();
     (0..pelt.skin.triangles.len())

@@ -1,0 +1,174 @@
+// Guard hair, undercoat and skin of every pixel into one colour, front to back (Andersen et al. 2016 §3.3, docs/steps/blend.md).
+#import furrier::scene::{scene, triangles, vertices, strands, point_of, unit_or}
+#import furrier::camera::{view, pixel_count, pixel_of, direction_through, ray_through, camera_from_world, flat_of, meet,
+    skin_triangle, heads}
+#import furrier::guard::{guard_ramp, opacity_at, along_hair}
+#import furrier::fragments::{Fragment, read_from, next_fragment}
+#import furrier::stretch::{Stretch, unpack_albedo, unpack_tangent}
+#import furrier::skin_look::skin_look
+
+// Transmittance below which nothing behind can be seen.
+const OPAQUE: f32 = 1e-3;
+const NO_STRETCH: u32 = 0xffffffffu;
+
+// Equation (4) in place of virtual fragments.
+override SIMPLIFIED: bool = false;
+
+@group(3) @binding(4) var<storage, read> stretches: array<Stretch>;
+@group(3) @binding(5) var<storage, read> looks: array<f32>;
+// Four planes of the band's pixels: radiance and alpha; albedo and distance; tangent and guard hair's part of alpha; normal and
+// undercoat's. Sums over passes.
+@group(3) @binding(6) var<storage, read_write> film: array<vec4<f32>>;
+
+// What lies in front, all premultiplied.
+struct Front {
+    radiance: vec3<f32>,
+    through: f32,
+    albedo: vec3<f32>,
+    z_m: f32,
+    tangent: vec3<f32>,
+    guard: f32,
+    normal: vec3<f32>,
+    undercoat: f32,
+}
+
+fn look_of(point: u32) -> vec3<f32> {
+    return vec3(looks[3u * point], looks[3u * point + 1u], looks[3u * point + 2u]);
+}
+
+fn opacity_of(fragment: Fragment) -> f32 {
+    return fragment.coverage * opacity_at(along_hair(fragment.point, fragment.along));
+}
+
+fn add_hair(front: ptr<function, Front>, fragment: Fragment) {
+    let weight = (*front).through * opacity_of(fragment);
+    let ramp = mix(guard_ramp(along_hair(fragment.point, 0.0)), guard_ramp(along_hair(fragment.point, 1.0)), fragment.along);
+    let tangent = unit_or(point_of(fragment.point + 1u) - point_of(fragment.point), vec3(0.0));
+    (*front).radiance += weight * mix(look_of(fragment.point), look_of(fragment.point + 1u), fragment.along);
+    (*front).albedo += weight * strands[fragment.point / scene.points_per_strand].tint * ramp;
+    (*front).tangent += weight * tangent;
+    (*front).z_m += weight * fragment.z_m;
+    (*front).guard += weight;
+    (*front).through -= weight;
+}
+
+fn add_undercoat(front: ptr<function, Front>, stretch: Stretch, alpha: f32, z_m: f32) {
+    let weight = (*front).through * alpha;
+    (*front).radiance += weight * stretch.radiance;
+    (*front).albedo += weight * unpack_albedo(stretch.faces);
+    (*front).tangent += weight * unpack_tangent(stretch.faces);
+    (*front).z_m += weight * z_m;
+    (*front).undercoat += weight;
+    (*front).through -= weight;
+}
+
+// The part of a stretch between two depths.
+fn add_part(front: ptr<function, Front>, stretch: Stretch, from_m: f32, to_m: f32) {
+    let extent = stretch.to_m - stretch.from_m;
+    var share = 1.0;
+    if extent > 0.0 {
+        share = (to_m - from_m) / extent;
+    }
+    add_undercoat(front, stretch, 1.0 - exp(-stretch.depth * share), 0.5 * (from_m + to_m));
+}
+
+fn add_skin(front: ptr<function, Front>, at: u32, middle: vec2<f32>) {
+    let named = atomicLoad(&skin_triangle[at]);
+    if named == 0u {
+        return;
+    }
+    let c = triangles[~named].corners;
+    let shape = flat_of(
+        camera_from_world(vertices[c.x].position_m),
+        camera_from_world(vertices[c.y].position_m),
+        camera_from_world(vertices[c.z].position_m),
+    );
+    let meeting = meet(shape, ray_through(middle));
+    if !meeting.met {
+        return;
+    }
+    let look = skin_look(~named, meeting.barycentric, direction_through(middle));
+    let weight = (*front).through;
+    (*front).radiance += weight * look.radiance;
+    (*front).albedo += weight * look.albedo;
+    (*front).normal += weight * look.normal;
+    (*front).z_m += weight * meeting.z_m;
+    (*front).through = 0.0;
+}
+
+@compute @workgroup_size(64)
+fn composite(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let at = (group.y * groups.x + group.x) * 64u + local;
+    if at >= pixel_count() {
+        return;
+    }
+    var front: Front;
+    front.through = 1.0;
+    var reader = read_from(at);
+    var fragment = next_fragment(&reader);
+    var index = heads[at];
+    while index != NO_STRETCH && front.through >= OPAQUE {
+        let stretch = stretches[index];
+        while fragment.real && fragment.z_m <= stretch.from_m && front.through >= OPAQUE {
+            add_hair(&front, fragment);
+            fragment = next_fragment(&reader);
+        }
+        if SIMPLIFIED {
+            var alpha = 1.0 - exp(-stretch.depth);
+            var unoccluded = 1.0;
+            var ahead = reader;
+            var behind = fragment;
+            while behind.real && unoccluded >= OPAQUE && alpha > 0.0 {
+                // Weighted by the fragment's own opacity, so that a hair's thinner share of a pixel takes less.
+                let own = opacity_of(behind) * unoccluded;
+                alpha -= own * exp(-scene.attenuation_per_m * (behind.z_m - stretch.from_m));
+                unoccluded -= own;
+                behind = next_fragment(&ahead);
+            }
+            add_undercoat(&front, stretch, max(alpha, 0.0), stretch.from_m);
+        } else {
+            var from_m = stretch.from_m;
+            while fragment.real && fragment.z_m < stretch.to_m && front.through >= OPAQUE {
+                let to_m = max(fragment.z_m, from_m);
+                add_part(&front, stretch, from_m, to_m);
+                add_hair(&front, fragment);
+                from_m = to_m;
+                fragment = next_fragment(&reader);
+            }
+            if stretch.to_m > from_m || stretch.from_m == stretch.to_m {
+                add_part(&front, stretch, from_m, stretch.to_m);
+            }
+        }
+        index = stretch.next;
+    }
+    while fragment.real && front.through >= OPAQUE {
+        add_hair(&front, fragment);
+        fragment = next_fragment(&reader);
+    }
+    let middle = vec2<f32>(pixel_of(at)) + 0.5;
+    add_skin(&front, at, middle);
+    if front.through < OPAQUE {
+        front.through = 0.0;
+    }
+
+    let count = pixel_count();
+    let distance = front.z_m * length(ray_through(middle));
+    var planes = array(
+        vec4(front.radiance, 1.0 - front.through),
+        vec4(front.albedo, distance),
+        vec4(front.tangent, front.guard),
+        vec4(front.normal, front.undercoat),
+    );
+    for (var plane = 0u; plane < 4u; plane++) {
+        let slot = plane * count + at;
+        if view.pass_index > 0u {
+            film[slot] += planes[plane];
+        } else {
+            film[slot] = planes[plane];
+        }
+    }
+}

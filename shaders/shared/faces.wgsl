@@ -1,0 +1,45 @@
+// Outer faces of the shell: tops of all prisms, and walls at open borders.
+#define_import_path furrier::faces
+
+#import furrier::scene::prism_of
+#import furrier::prism::{Place, jacobian}
+#import furrier::camera::{Flat, flat_of, camera_from_world}
+
+// Triangle · 8 + kind: 0 for the top, 1 + 2·corner for one half of the wall over the edge opposite to that corner, the next
+// for its other half.
+@group(3) @binding(0) var<storage, read> faces: array<u32>;
+
+fn on_corner(corner: u32, t: f32) -> Place {
+    return Place(vec2(f32(corner == 1u), f32(corner == 2u)), t);
+}
+
+// Corner `which` of a face, in its prism.
+fn face_place(face: u32, which: u32) -> Place {
+    let kind = faces[face] & 7u;
+    if kind == 0u {
+        return on_corner(which, 1.0);
+    }
+    let corner = (kind - 1u) / 2u;
+    let first = (corner + 1u) % 3u;
+    let second = (corner + 2u) % 3u;
+    // One half: foot of the first, foot and top of the second; the other: foot of the first, tops of second and first.
+    if which == 0u {
+        return on_corner(first, 0.0);
+    }
+    if (kind & 1u) == 1u {
+        return on_corner(second, f32(which == 2u));
+    }
+    return on_corner(select(first, second, which == 1u), 1.0);
+}
+
+fn face_corner(face: u32, which: u32) -> vec3<f32> {
+    return jacobian(prism_of(faces[face] >> 3u), face_place(face, which)).at_m;
+}
+
+fn face_shape(face: u32) -> Flat {
+    return flat_of(
+        camera_from_world(face_corner(face, 0u)),
+        camera_from_world(face_corner(face, 1u)),
+        camera_from_world(face_corner(face, 2u)),
+    );
+}

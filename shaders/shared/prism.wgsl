@@ -1,0 +1,93 @@
+// One prism of the shell and its sub-elements, as src/render/shell/.
+#define_import_path furrier::prism
+
+struct Prism {
+    // Corners on the skin, m.
+    foot_m: array<vec3<f32>, 3>,
+    // Skin to the top, m.
+    offset_m: array<vec3<f32>, 3>,
+}
+
+// x = Σ bᵢ (pᵢ + t oᵢ).
+struct Place {
+    // Barycentric coordinates of corners 1 and 2.
+    b: vec2<f32>,
+    // Height, 0 on the skin to 1 at the top.
+    t: f32,
+}
+
+// The nearest place inside: a march that rounding or a folded prism has led astray must not read beyond the corners.
+fn inside_of(place: Place) -> Place {
+    let b = max(barycentric(place), vec3(0.0));
+    return Place(b.yz / (b.x + b.y + b.z), clamp(place.t, 0.0, 1.0));
+}
+
+struct Jacobian {
+    at_m: vec3<f32>,
+    up_m: vec3<f32>,
+    determinant: f32,
+    // Rows of the inverse: gradients of b₁, b₂ and t, 1/m.
+    gradient_b: vec3<f32>,
+    gradient_c: vec3<f32>,
+    gradient_t: vec3<f32>,
+}
+
+fn barycentric(place: Place) -> vec3<f32> {
+    return vec3(1.0 - place.b.x - place.b.y, place.b.x, place.b.y);
+}
+
+fn moved(place: Place, rates: vec3<f32>, by: f32) -> Place {
+    return Place(place.b + rates.xy * by, place.t + rates.z * by);
+}
+
+fn jacobian(prism: Prism, place: Place) -> Jacobian {
+    let origin = prism.foot_m[0] + prism.offset_m[0] * place.t;
+    let side_b = prism.foot_m[1] + prism.offset_m[1] * place.t - origin;
+    let side_c = prism.foot_m[2] + prism.offset_m[2] * place.t - origin;
+    let b = barycentric(place);
+    let up_m = prism.offset_m[0] * b.x + prism.offset_m[1] * b.y + prism.offset_m[2] * b.z;
+    let across = cross(side_c, up_m);
+    let determinant = dot(side_b, across);
+    // A flat prism has no volume: rates of zero keep a march from leaving for infinity.
+    let inverse = select(0.0, 1.0 / determinant, abs(determinant) > 1.1754944e-38);
+    return Jacobian(
+        origin + side_b * place.b.x + side_c * place.b.y,
+        up_m,
+        determinant,
+        across * inverse,
+        cross(up_m, side_b) * inverse,
+        cross(side_b, side_c) * inverse,
+    );
+}
+
+fn rates_along(j: Jacobian, along: vec3<f32>) -> vec3<f32> {
+    return vec3(dot(j.gradient_b, along), dot(j.gradient_c, along), dot(j.gradient_t, along));
+}
+
+// Sub-element of a layer split d times that holds b (Andersen et al. 2016, eq. (1) and (2)).
+fn subelement(b: vec3<f32>, d: u32) -> u32 {
+    let n = f32(1u << d);
+    let u = clamp((1.0 - b.xy) * n, vec2(0.0), vec2(n));
+    let rest = clamp(2.0 * n - u.x - u.y, 0.0, n);
+    let last = i32(1u << d) - 1;
+    let row = min(i32(u.x), last);
+    let across = min(i32(u.y), last) - min(i32(rest), last);
+    return u32(row * (row + 1) + clamp(across, -row, row));
+}
+
+// Barycentric coordinates of a sub-element's centre.
+fn subelement_centre(index: u32, d: u32) -> vec3<f32> {
+    let n = i32(1u << d);
+    let i = i32(index);
+    var row = i32(sqrt(f32(index)));
+    // The root may be rounded to either side.
+    row = select(row, row - 1, row * row > i);
+    row = select(row, row + 1, (row + 1) * (row + 1) <= i);
+    let across = i - row * (row + 1);
+    // i₁ + i₂ is 2n - 1 - i₀ in sub-elements that point as the triangle does, one less in the others.
+    let upright = ((across + 2 * n - 1 - row) & 1) == 0;
+    let sum = 2 * n - 1 - row - select(1, 0, upright);
+    let rest = select(2.0 / 3.0, 1.0 / 3.0, upright);
+    let at = vec3(f32(row), f32((sum + across) / 2), f32((sum - across) / 2));
+    return 1.0 - (at + rest) / f32(n);
+}

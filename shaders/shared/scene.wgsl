@@ -1,0 +1,200 @@
+// What a picture shows, the same for every pass: skin, fields, hair, lights.
+#define_import_path furrier::scene
+
+#import furrier::prism::Prism
+
+// No triangle, no item.
+const NOTHING: u32 = 0xffffffffu;
+// Heights at which tables are kept, less one.
+const TABLE: u32 = 64u;
+
+// One kind of hair as a layer over flat skin.
+struct Kind {
+    // Projected hair area per skin area and height, 1/m, where the density field is 1; 0 where there is no such hair.
+    area_per_m: f32,
+    // Mean height where the length field is 1, m.
+    height_m: f32,
+    // Standard deviation of height over its mean.
+    variation: f32,
+    unused: f32,
+}
+
+// A lobe along the hair: albedo, shift in rad, -1/(2σ²).
+struct Lobe {
+    albedo: f32,
+    shift_rad: f32,
+    scale: f32,
+    unused: f32,
+}
+
+struct Scene {
+    triangle_count: u32,
+    layers: u32,
+    strand_count: u32,
+    points_per_strand: u32,
+
+    light_count: u32,
+    // How many of the lights fall on undercoat.
+    undercoat_light_count: u32,
+    // Outer faces of the shell, and prisms that hold the eye.
+    face_count: u32,
+    inside_count: u32,
+
+    // Undercoat.
+    density_per_square_m: f32,
+    diameter_m: f32,
+    stretch: f32,
+    slope: f32,
+    pattern_amplitude: f32,
+    pattern_wavelength_m: f32,
+    pattern_jitter: f32,
+    clump_spacing_m: f32,
+    clump_strength: f32,
+    step_depth: f32,
+    step_layers: f32,
+    undercoat_albedo: f32,
+
+    // Kajiya and Kay's constants: diffuse over π², highlight's albedo times its norm, exponent.
+    undercoat_diffuse: f32,
+    undercoat_specular: f32,
+    undercoat_exponent: f32,
+    // Virtual fragments per march.
+    groups: f32,
+
+    // Radiance from everywhere.
+    ambient: vec3<f32>,
+    guard_albedo: f32,
+    skin_factor: vec3<f32>,
+    taper: f32,
+
+    undercoat_ramp: array<vec4<f32>, 3>,
+    guard_ramp: array<vec4<f32>, 3>,
+    guard_kind: Kind,
+    undercoat_kind: Kind,
+
+    tip_transparency: f32,
+    tip_exponent: f32,
+    tt_azimuth_scale: f32,
+    tt_norm: f32,
+    glint: f32,
+    glint_angle_rad: f32,
+    glint_scale: f32,
+    glint_norm: f32,
+    surround_norm: f32,
+    guard_diffuse: f32,
+    // Attenuation of simplified blending, 1/m.
+    attenuation_per_m: f32,
+    unused: f32,
+    // R, TT, TRT.
+    lobes: array<Lobe, 3>,
+}
+
+struct Triangle {
+    corners: vec3<u32>,
+    // Subdivisions of the stored density.
+    density_splits: u32,
+    // Beyond the edges opposite to each corner: triangle · 4 + its opposite corner, or nothing.
+    beyond: vec3<u32>,
+    // Subdivisions of the stored shadow.
+    shadow_splits: u32,
+    // First column of sub-elements in the stored density, or nothing; the same in the stored shadow.
+    density_at: u32,
+    shadow_at: u32,
+    // Of the skin at rest, m².
+    rest_area: f32,
+}
+
+struct Vertex {
+    position_m: vec3<f32>,
+    density: f32,
+    // Skin to the top of the shell, m.
+    offset_m: vec3<f32>,
+    length: f32,
+    normal: vec3<f32>,
+    clump: f32,
+    lean: vec3<f32>,
+    tint: vec3<f32>,
+    // Of the skin at rest: patterns keep to it, so that they do not swim under a moving skin.
+    rest_m: vec3<f32>,
+    rest_normal: vec3<f32>,
+}
+
+struct Light {
+    to_light: vec3<f32>,
+    irradiance: vec3<f32>,
+}
+
+struct Strand {
+    tint: vec3<f32>,
+    id: u32,
+    // Of the root, corners 0 and 1.
+    b: vec2<f32>,
+    triangle: u32,
+    root_radius_m: f32,
+}
+
+@group(0) @binding(0) var<uniform> scene: Scene;
+@group(0) @binding(1) var<storage, read> triangles: array<Triangle>;
+@group(0) @binding(2) var<storage, read> vertices: array<Vertex>;
+// Share of hairs that reach a height; hair area above it, of undercoat and of both kinds.
+@group(0) @binding(3) var<storage, read> tables: array<f32>;
+// The first is the key.
+@group(0) @binding(4) var<storage, read> lights: array<Light>;
+@group(0) @binding(5) var<storage, read> strands: array<Strand>;
+@group(0) @binding(6) var<storage, read> points_m: array<f32>;
+
+fn prism_of(triangle: u32) -> Prism {
+    let c = triangles[triangle].corners;
+    return Prism(
+        array(vertices[c.x].position_m, vertices[c.y].position_m, vertices[c.z].position_m),
+        array(vertices[c.x].offset_m, vertices[c.y].offset_m, vertices[c.z].offset_m),
+    );
+}
+
+fn normal_at(triangle: u32, b: vec3<f32>) -> vec3<f32> {
+    let c = triangles[triangle].corners;
+    let sum = vertices[c.x].normal * b.x + vertices[c.y].normal * b.y + vertices[c.z].normal * b.z;
+    return unit_or(sum, vec3(0.0, 1.0, 0.0));
+}
+
+fn lean_at(triangle: u32, b: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {
+    let c = triangles[triangle].corners;
+    return unit_or(vertices[c.x].lean * b.x + vertices[c.y].lean * b.y + vertices[c.z].lean * b.z, otherwise);
+}
+
+fn tint_at(triangle: u32, b: vec3<f32>) -> vec3<f32> {
+    let c = triangles[triangle].corners;
+    return vertices[c.x].tint * b.x + vertices[c.y].tint * b.y + vertices[c.z].tint * b.z;
+}
+
+fn density_at(triangle: u32, b: vec3<f32>) -> f32 {
+    let c = triangles[triangle].corners;
+    return vertices[c.x].density * b.x + vertices[c.y].density * b.y + vertices[c.z].density * b.z;
+}
+
+fn length_at(triangle: u32, b: vec3<f32>) -> f32 {
+    let c = triangles[triangle].corners;
+    return vertices[c.x].length * b.x + vertices[c.y].length * b.y + vertices[c.z].length * b.z;
+}
+
+fn clump_at(triangle: u32, b: vec3<f32>) -> f32 {
+    let c = triangles[triangle].corners;
+    return vertices[c.x].clump * b.x + vertices[c.y].clump * b.y + vertices[c.z].clump * b.z;
+}
+
+// A table's value at height t, linear in between.
+fn table_at(table: u32, t: f32) -> f32 {
+    let at = clamp(t, 0.0, 1.0) * f32(TABLE);
+    let low = min(u32(at), TABLE - 1u);
+    let first = table * (TABLE + 1u) + low;
+    return tables[first] + (at - f32(low)) * (tables[first + 1u] - tables[first]);
+}
+
+fn point_of(index: u32) -> vec3<f32> {
+    return vec3(points_m[3u * index], points_m[3u * index + 1u], points_m[3u * index + 2u]);
+}
+
+fn unit_or(v: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {
+    let size = length(v);
+    return select(otherwise, v / size, size > 1e-30);
+}

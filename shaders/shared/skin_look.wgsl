@@ -1,0 +1,32 @@
+// What bare or furred skin looks like, as src/render/skin.rs.
+#define_import_path furrier::skin_look
+
+#import furrier::scene::{scene, lights, normal_at, lean_at, tint_at, density_at, length_at}
+#import furrier::fur_light::{above_both, sky_depth, slant_depth, terminator, PI}
+
+struct SkinLook {
+    radiance: vec3<f32>,
+    albedo: vec3<f32>,
+    normal: vec3<f32>,
+}
+
+// Skin where a ray from the eye along `direction` meets a triangle: diffuse, under all of its hair.
+fn skin_look(triangle: u32, b: vec3<f32>, direction: vec3<f32>) -> SkinLook {
+    let outside = normal_at(triangle, b);
+    let back = dot(direction, outside) > 0.0;
+    let normal = select(outside, -outside, back);
+    let lean = lean_at(triangle, b, normal);
+    let albedo = tint_at(triangle, b) * scene.skin_factor;
+    // The back of a pelt is bare.
+    let above = select(above_both(density_at(triangle, b), length_at(triangle, b), 0.0), 0.0, back);
+    var radiance = scene.ambient * albedo * exp(-sky_depth(above));
+    for (var i = 0u; i < scene.light_count; i++) {
+        let light = lights[i];
+        let cosine = dot(light.to_light, normal);
+        if cosine > 0.0 {
+            let shadow = exp(-slant_depth(above, light.to_light, normal, lean));
+            radiance += light.irradiance * albedo * (cosine * shadow * terminator(light.to_light, normal) / PI);
+        }
+    }
+    return SkinLook(radiance, albedo, normal);
+}

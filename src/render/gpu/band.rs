@@ -1,0 +1,232 @@
+//! One band of rows: its buffers, and the passes that draw it.
+
+use super::kernels::Kernels;
+use super::layout::{StretchItem, Totals, ViewUniform};
+use super::plan::Room;
+use super::scene::GpuScene;
+use crate::error::Result;
+use crate::gpu::{Gpu, Timer};
+use crate::render::view::View;
+
+/// The device's steps in the order of their timestamps.
+pub(super) const STEPS: [&str; 5] = ["base mesh", "shell entrances", "march", "explicit raster", "compositing"];
+
+/// Bytes of each pixel: film, skin, what hides, first stretch, span and cursor.
+pub(super) const PIXEL_BYTES: usize = FILM_BYTES + 7 * 4;
+/// Bytes of a pixel's film.
+pub(super) const FILM_BYTES: usize = 64;
+/// Bytes of a place where a ray enters the shell.
+pub(super) const START_BYTES: usize = 8;
+/// Bytes of a fragment of guard hair, in five buffers of four.
+pub(super) const FRAGMENT_BYTES: usize = 20;
+/// Bytes of a stretch of undercoat.
+pub(super) const STRETCH_BYTES: usize = size_of::<StretchItem>();
+
+/// Buffers with room for a band.
+pub(super) struct Band {
+    view: wgpu::Buffer,
+    totals: wgpu::Buffer,
+    pixels: [wgpu::Buffer; 6],
+    film: wgpu::Buffer,
+    frame: wgpu::BindGroup,
+    entrances: wgpu::BindGroup,
+    march: wgpu::BindGroup,
+    guard: wgpu::BindGroup,
+    order: wgpu::BindGroup,
+    composite: wgpu::BindGroup,
+    poison: wgpu::BindGroup,
+    looks: wgpu::BindGroup,
+    room: Room,
+}
+
+/// A band as drawn: sums over passes, and what each pass came to.
+pub(super) struct Drawn {
+    /// Four planes of four numbers per pixel, as `render/composite.wgsl` describes.
+    pub film: Vec<[f32; 4]>,
+    /// By pass.
+    pub totals: Vec<Totals>,
+    /// Time of each of [`STEPS`], ms, summed over passes; none without a clock.
+    pub ms: Option<Vec<f64>>,
+}
+
+impl Band {
+    /// Makes the buffers.
+    ///
+    /// # Errors
+    /// [`crate::error::Kind::Device`] where one is too large.
+    pub(super) fn new(gpu: &Gpu, kernels: &Kernels, scene: &GpuScene, room: Room) -> Result<Self> {
+        let pixel = |label, bytes| gpu.storage(label, room.pixels, bytes);
+        let view = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("view"),
+            size: size_of::<ViewUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let totals = gpu.storage("totals", 1, size_of::<Totals>())?;
+        let pixels = [
+            pixel("skin depth", 4)?,
+            pixel("skin triangle", 4)?,
+            pixel("opaque depth", 4)?,
+            pixel("first stretch", 4)?,
+            pixel("spans", 8)?,
+            pixel("cursors", 4)?,
+        ];
+        let film = pixel("film", FILM_BYTES)?;
+        let starts = gpu.storage("starts", room.starts, START_BYTES)?;
+        let stretches = gpu.storage("stretches", room.stretches, STRETCH_BYTES)?;
+        let fragment = |label| gpu.storage(label, room.fragments, 4);
+        let [z, point, share, pixel, order] = [
+            fragment("fragment depths")?,
+            fragment("fragment points")?,
+            fragment("fragment shares")?,
+            fragment("fragment pixels")?,
+            fragment("fragment order")?,
+        ];
+        let layouts = &kernels.layouts;
+        let mut of_frame = vec![&view, &totals];
+        of_frame.extend(&pixels);
+        Ok(Self {
+            frame: gpu.group(&layouts.frame, &of_frame),
+            entrances: gpu.group(&layouts.entrances, &[&scene.faces, &starts]),
+            march: gpu.group(&layouts.march, &[&scene.faces, &starts, &scene.inside, &stretches]),
+            guard: gpu.group(&layouts.guard, &[&z, &point, &share, &pixel]),
+            order: gpu.group(&layouts.order, &[&z, &point, &pixel, &order]),
+            composite: gpu.group(&layouts.composite, &[&z, &point, &share, &order, &stretches, &scene.looks, &film]),
+            poison: gpu.group(&layouts.one, &[&film]),
+            looks: gpu.group(&layouts.one, &[&scene.looks]),
+            view,
+            totals,
+            pixels,
+            film,
+            room,
+        })
+    }
+
+    /// Lights the guard hair. What it looks like depends on the eye alone, so once serves all bands and passes.
+    ///
+    /// # Errors
+    /// As [`Gpu::finish`].
+    pub(super) fn light(&self, gpu: &Gpu, kernels: &Kernels, scene: &GpuScene, view: &View) -> Result<Option<f64>> {
+        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view, [0, 0], 0)));
+        let timer = Timer::new(gpu, 1);
+        let mut encoder = gpu.encoder("light");
+        let groups = [&scene.group, &scene.volume, &self.frame, &self.looks];
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("light"),
+                timestamp_writes: timer.compute_writes(0),
+            });
+            kernels.strands.dispatch(&mut pass, &groups, scene.point_count.div_ceil(64));
+        }
+        gpu.finish(encoder)?;
+        Ok(timer.read_ms(gpu)?.map(|ms| ms[0]))
+    }
+
+    /// Draws `rows` of the picture once for each view and adds up.
+    ///
+    /// # Errors
+    /// As [`Gpu::finish`].
+    pub(super) fn draw(
+        &self,
+        gpu: &Gpu,
+        kernels: &Kernels,
+        scene: &GpuScene,
+        views: &[View],
+        rows: [u32; 2],
+    ) -> Result<Drawn> {
+        let pixels = (rows[1] - rows[0]) as usize * views[0].size[0];
+        let totals_bytes = size_of::<Totals>() as u64;
+        let film_bytes = (pixels * FILM_BYTES) as u64;
+        let read = |label, size| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+                mapped_at_creation: false,
+            })
+        };
+        let read_totals = read("read totals", totals_bytes * views.len() as u64);
+        let read_film = read("read film", film_bytes);
+        let steps = STEPS.len() as u32;
+        let timer = Timer::new(gpu, steps * views.len() as u32);
+        for (index, view) in views.iter().enumerate() {
+            let uniform = ViewUniform {
+                most_starts: self.room.starts as u32,
+                most_fragments: self.room.fragments as u32,
+                most_stretches: self.room.stretches as u32,
+                ..ViewUniform::new(view, rows, index as u32)
+            };
+            gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&uniform));
+            let mut encoder = gpu.encoder("band");
+            self.record(&mut encoder, kernels, scene, pixels, index == 0, |step| {
+                timer.compute_writes(index as u32 * steps + step)
+            });
+            encoder.copy_buffer_to_buffer(&self.totals, 0, &read_totals, index as u64 * totals_bytes, totals_bytes);
+            gpu.queue.submit([encoder.finish()]);
+        }
+        let mut encoder = gpu.encoder("read");
+        encoder.copy_buffer_to_buffer(&self.film, 0, &read_film, 0, film_bytes);
+        gpu.finish(encoder)?;
+        let ms = timer
+            .read_ms(gpu)?
+            .map(|ms| (0..STEPS.len()).map(|step| ms.iter().skip(step).step_by(STEPS.len()).sum()).collect());
+        Ok(Drawn {
+            film: bytemuck::pod_collect_to_vec(&gpu.read_buffer(&read_film)?),
+            totals: bytemuck::pod_collect_to_vec(&gpu.read_buffer(&read_totals)?),
+            ms,
+        })
+    }
+
+    fn record<'a>(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        kernels: &Kernels,
+        scene: &GpuScene,
+        pixels: usize,
+        first: bool,
+        writes: impl Fn(u32) -> Option<wgpu::ComputePassTimestampWrites<'a>>,
+    ) {
+        let [skin_depth, skin_triangle, .., cursors] = &self.pixels;
+        for buffer in [&self.totals, skin_depth, skin_triangle, cursors] {
+            encoder.clear_buffer(buffer, 0, None);
+        }
+        let common = [&scene.group, &scene.volume, &self.frame];
+        let own = |group3| [common[0], common[1], common[2], group3];
+        let (by_256, by_64) = (pixels.div_ceil(256), pixels.div_ceil(64));
+        let begin = |encoder: &mut wgpu::CommandEncoder, step: usize, record: &dyn Fn(&mut wgpu::ComputePass<'_>)| {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some(STEPS[step]),
+                timestamp_writes: writes(step as u32),
+            });
+            record(&mut pass);
+        };
+        begin(encoder, 0, &|pass| {
+            for kernel in &kernels.skin {
+                kernel.dispatch(pass, &common, scene.triangle_count);
+            }
+        });
+        begin(encoder, 1, &|pass| {
+            kernels.entrances[0].dispatch(pass, &own(&self.entrances), scene.face_count);
+            kernels.allot[0].dispatch(pass, &common, by_256);
+            kernels.entrances[1].dispatch(pass, &own(&self.entrances), scene.face_count);
+        });
+        begin(encoder, 2, &|pass| {
+            kernels.march.dispatch(pass, &own(&self.march), by_64);
+        });
+        encoder.clear_buffer(cursors, 0, None);
+        begin(encoder, 3, &|pass| {
+            kernels.guard[0].dispatch(pass, &own(&self.guard), scene.piece_count.div_ceil(64));
+            kernels.allot[1].dispatch(pass, &common, by_256);
+            kernels.guard[1].dispatch(pass, &own(&self.guard), scene.piece_count.div_ceil(64));
+            kernels.trim.dispatch(pass, &own(&self.guard), by_64);
+            // More threads than fragments: how many there are is not known here.
+            kernels.order.dispatch(pass, &own(&self.order), self.room.fragments.div_ceil(64));
+        });
+        begin(encoder, 4, &|pass| {
+            if first {
+                kernels.poison.dispatch(pass, &own(&self.poison), (4 * pixels).div_ceil(64));
+            }
+            kernels.composite.dispatch(pass, &own(&self.composite), by_64);
+        });
+    }
+}
