@@ -133,7 +133,7 @@ fn a_pose_is_named_by_animation_and_time() {
     let folder = tempfile::tempdir().unwrap();
     let render = |pose: &[&str], name: &str| {
         let mut command = Command::new(furrier_path());
-        command.args(["render", "sample:creature", "--size", "64x64", "--set", "guard.density_per_cm2=10"]).args(pose);
+        command.args(["render", "sample:creature", "--size", "24x24", "--set", "guard.density_per_cm2=10"]).args(pose);
         command.args(["--set", "undercoat.density_per_cm2=500", "-o"]).arg(folder.path().join(name));
         command.assert()
     };

@@ -164,9 +164,10 @@ fn blur(values: &[DVec4], width: usize, height: usize, radius: f64) -> Vec<DVec4
     };
     let halves: Vec<f64> =
         (-reach..=reach).map(|dy| area_up_to(dy as f64 + 0.5) - area_up_to(dy as f64 - 0.5)).collect();
-    let scale = 1.0 / (std::f64::consts::PI * radius * radius);
     let mut out = vec![DVec4::ZERO; values.len()];
     out.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        // How much of each disc lies in the picture: what is beyond its edge is taken to be like what is inside.
+        let mut within = vec![0.0; width];
         for (dy, &half) in (-reach..=reach).zip(&halves) {
             let source = y as isize + dy;
             if source < 0 || source >= height as isize {
@@ -174,15 +175,17 @@ fn blur(values: &[DVec4], width: usize, height: usize, radius: f64) -> Vec<DVec4
             }
             let sums = &sums[source as usize * (width + 1)..][..width + 1];
             let up_to = |x: f64| {
-                let x = x.clamp(0.0, width as f64);
                 let left = (x as usize).min(width - 1);
                 sums[left].lerp(sums[left + 1], x - left as f64)
             };
-            for (x, value) in row.iter_mut().enumerate() {
+            for (x, (value, within)) in row.iter_mut().zip(&mut within).enumerate() {
                 let middle = x as f64 + 0.5;
-                *value += (up_to(middle + half) - up_to(middle - half)) * scale;
+                let (from, to) = ((middle - half).max(0.0), (middle + half).min(width as f64));
+                *value += up_to(to) - up_to(from);
+                *within += to - from;
             }
         }
+        row.iter_mut().zip(within).for_each(|(value, within)| *value /= within);
     });
     out
 }
