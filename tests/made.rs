@@ -34,7 +34,7 @@ pub fn tile(seed: u64) -> Tile {
     let (fin_albedo, fin_tangent) = (fin(), fin());
     Tile {
         preset: format!("made {seed}"),
-        sampled: if seed % 2 == 0 { Sampled::Skin } else { Sampled::Square },
+        sampled: if seed.is_multiple_of(2) { Sampled::Skin } else { Sampled::Square },
         edge_m: 0.008,
         height_m: 0.012,
         shells: ShellStack {
