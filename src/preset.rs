@@ -214,6 +214,12 @@ impl Preset {
                     .with_expected(format!("a number from {low} to {high}")));
             }
         }
+        for (i, whorl) in self.groom.whorls.iter().enumerate() {
+            whorl.check(&format!("groom.whorls[{i}]"))?;
+        }
+        for (i, stroke) in self.groom.strokes.iter().enumerate() {
+            stroke.check(&format!("groom.strokes[{i}]"))?;
+        }
         self.shells.check()?;
         self.fins.check()?;
         Ok(self)

@@ -78,7 +78,7 @@ fn table(name: &str, schema: &Value, defaults: &Value, root: &Value, page: &mut 
         write!(page, "{}\n\n", one_line(text)).unwrap();
     }
     page.push_str("| key | default | what it is |\n|---|---|---|\n");
-    let mut tables = Vec::new();
+    let (mut tables, mut lists) = (Vec::new(), Vec::new());
     for (key, property) in schema["properties"].as_object().unwrap() {
         let inner = resolved(property, root);
         let text = property["description"].as_str().or(inner["description"].as_str()).unwrap_or_default();
@@ -87,11 +87,22 @@ fn table(name: &str, schema: &Value, defaults: &Value, root: &Value, page: &mut 
             continue;
         }
         let (text, choices) = (one_line(text), choices(inner));
-        writeln!(page, "| `{key}` | {} | {text}{choices} |", toml_text(&defaults[key])).unwrap();
+        let item = resolved(&property["items"], root);
+        if item["properties"].is_object() {
+            lists.push((key, item));
+        }
+        // What an entry of a list must say has no default.
+        let required = schema["required"].as_array().is_some_and(|keys| keys.contains(&key.as_str().into()));
+        let default = defaults.get(key).or(property.get("default")).unwrap_or(&Value::Null);
+        let default = if required { "must be given".to_owned() } else { toml_text(default) };
+        writeln!(page, "| `{key}` | {default} | {text}{choices} |").unwrap();
     }
     for (key, inner) in tables {
         let path = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
         table(&path, inner, &defaults[key], root, page);
+    }
+    for (key, item) in lists {
+        table(&format!("[{name}.{key}]"), item, &Value::Null, root, page);
     }
 }
 

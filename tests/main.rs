@@ -35,6 +35,7 @@ mod presets;
 mod render_cli;
 mod ribbons;
 mod runtime;
+mod seams;
 mod shaders;
 mod silhouette;
 mod sphere;

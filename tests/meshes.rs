@@ -1,8 +1,7 @@
-//! Meshes for tests, made in code or read from plain GLB files.
+//! Meshes for tests, made in code.
 
 use furrier::data::mesh::{Mesh, position_classes};
 use furrier::math::{Vec2, Vec3};
-use std::path::Path;
 
 /// A mesh from positions (m) and triangles, with smooth normals and points joined where they are bitwise equal.
 pub fn mesh(positions_m: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {
@@ -87,42 +86,6 @@ pub fn moebius(cells: u32) -> Mesh {
     });
     let position_class = position_classes(&band.positions_m, 1e-4);
     Mesh { position_class, ..band }
-}
-
-/// The triangles of a GLB without skins or node transforms that matter, all primitives together; `None` where they
-/// need a decoder.
-pub fn read_glb(path: &Path) -> Option<Mesh> {
-    let (document, buffers, _) = gltf::import(path).ok()?;
-    let (mut positions, mut triangles, mut uv) = (Vec::new(), Vec::new(), Vec::new());
-    for node in document.nodes() {
-        let Some(glb_mesh) = node.mesh() else { continue };
-        let matrix = furrier::math::Mat4::from_cols_array_2d(&node.transform().matrix());
-        for primitive in glb_mesh.primitives().filter(|p| p.mode() == gltf::mesh::Mode::Triangles) {
-            let reader = primitive.reader(|buffer| Some(&buffers[buffer.index()]));
-            let base = positions.len() as u32;
-            positions.extend(reader.read_positions()?.map(|p| matrix.transform_point3(Vec3::from_array(p))));
-            let vertices = positions.len() as u32 - base;
-            match reader.read_tex_coords(0) {
-                Some(set) => uv.extend(set.into_f32().map(Vec2::from_array)),
-                None => uv.resize(positions.len(), Vec2::ZERO),
-            }
-            let indices: Vec<u32> = reader.read_indices().map_or((0..vertices).collect(), |i| i.into_u32().collect());
-            triangles.extend(indices.as_chunks::<3>().0.iter().map(|t| t.map(|i| i + base)));
-        }
-    }
-    let low = positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
-    let high = positions.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
-    let in_range = triangles.iter().flatten().all(|&v| (v as usize) < positions.len());
-    if triangles.is_empty() || !in_range || !low.is_finite() || !high.is_finite() {
-        return None;
-    }
-    let centred: Vec<Vec3> = positions.iter().map(|&p| p - 0.5 * (low + high)).collect();
-    let position_class = position_classes(&centred, 1e-6 * (high - low).length());
-    let normals = vec![Vec3::Y; centred.len()];
-    let mut mesh =
-        Mesh { positions_m: centred, normals, triangles, position_class, uv_sets: vec![uv], ..Mesh::default() };
-    mesh.normals = mesh.smooth_normals();
-    mesh.checked().ok()
 }
 
 /// `direction` made tangent to the skin and of unit length at each vertex, zero where that fails.

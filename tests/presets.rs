@@ -1,7 +1,10 @@
 //! The built-in presets: each reads, names itself, and describes hair that can exist.
 
+use furrier::asset::Fallback;
+use furrier::bake::units::Units;
+use furrier::bake::{Method, Request, bake};
 use furrier::error::Kind;
-use furrier::fur::groom::{Comb, Length};
+use furrier::fur::groom::{Comb, Length, Place};
 use furrier::preset::Preset;
 
 #[test]
@@ -101,4 +104,84 @@ fn a_preset_file_is_found_named_and_refused_by_name() {
 
     let error = Preset::load("foxx").unwrap_err();
     assert!(error.expected.unwrap().contains("fox, grass"));
+}
+
+const COMBED: &str = r#"
+size_m = 1.0
+[groom]
+comb = "smooth"
+[[groom.whorls]]
+at = { relative = [0.5, 1.0, 0.5] }
+reach = { relative = 0.2 }
+spin_deg = 90
+[[groom.whorls]]
+at = { units = [0.0, -1.0, 0.0] }
+[[groom.strokes]]
+points = { relative = [[0.5, 0.5, 1.0], [1.0, 0.5, 0.5], [0.5, 0.5, 0.0]] }
+reach = { mm = 40 }
+"#;
+
+#[test]
+fn whorls_and_strokes_are_read() {
+    let groom = Preset::from_toml(COMBED).unwrap().groom;
+    assert_eq!(groom.comb, Comb::Smooth);
+    assert_eq!(groom.whorls[0].at, Place::Relative([0.5, 1.0, 0.5]));
+    assert_eq!((groom.whorls[0].spin_deg, groom.whorls[1].spin_deg), (90.0, 60.0));
+    assert_eq!(groom.whorls[1].reach, Length::Relative(0.1));
+    assert_eq!(groom.strokes[0].points.places().len(), 3);
+    // Settings reach them as they reach all else.
+    let cleared = Preset::from_toml(COMBED).unwrap().with_settings(&["groom.whorls=[]".to_owned()]).unwrap();
+    assert!(cleared.groom.whorls.is_empty() && cleared.groom.strokes.len() == 1);
+}
+
+#[test]
+fn whorls_and_strokes_that_cannot_be_are_refused_by_name() {
+    for (good, bad, field) in [
+        ("[0.5, 1.0, 0.5]", "[0.5, 7.0, 0.5]", "groom.whorls[0].at.relative"),
+        ("[0.0, -1.0, 0.0]", "[0.0, nan, 0.0]", "groom.whorls[1].at.units"),
+        ("{ relative = 0.2 }", "{ relative = 0.0 }", "groom.whorls[0].reach.relative"),
+        ("spin_deg = 90", "spin_deg = 360", "groom.whorls[0].spin_deg"),
+        ("{ mm = 40 }", "{ mm = -1 }", "groom.strokes[0].reach.mm"),
+        ("[[0.5, 0.5, 1.0], [1.0, 0.5, 0.5], [0.5, 0.5, 0.0]]", "[[0.5, 0.5, 1.0]]", "groom.strokes[0].points"),
+        ("[1.0, 0.5, 0.5]", "[0.5, 0.5, 1.0]", "groom.strokes[0].points"),
+        ("[1.0, 0.5, 0.5]", "[1.0, 0.5, inf]", "groom.strokes[0].points[1].relative"),
+    ] {
+        let text = COMBED.replacen(good, bad, 1);
+        assert_ne!(text, COMBED, "{good} is not in the preset");
+        let error = Preset::from_toml(&text).expect_err(bad);
+        assert_eq!((error.kind, error.field.as_deref()), (Kind::Usage, Some(field)), "{error}");
+    }
+    for text in ["at = 3", "at = { relative = [0.5, 1.0] }", "at = { metres = [0, 0, 0] }", "spin = 3"] {
+        assert!(Preset::from_toml(&COMBED.replacen("spin_deg = 90", text, 1)).is_err(), "{text}");
+    }
+}
+
+#[test]
+fn a_whorl_turns_hair_where_it_says_and_one_that_misses_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let bake = |preset: Preset| {
+        let request = Request {
+            input: "sample:sphere".into(),
+            out: folder.path().join("sphere.glb"),
+            preset: preset.with_settings(&["shells.texture_size=16".into(), "shells.layers=2".into()]).unwrap(),
+            presets: vec![],
+            materials: vec![],
+            units: Units::Auto,
+            method: Method::Lapped,
+            seed: 0,
+            fallback: Fallback::None,
+            judge: false,
+        };
+        bake(&request, &mut |_| {}).unwrap()
+    };
+    let size = |baked: &furrier::bake::Baked| baked.diagonal_m as f32;
+    let preset = Preset::from_toml(&COMBED.replacen("0.0, -1.0, 0.0", "0.0, -50.0, 0.0", 1)).unwrap();
+    let baked = bake(preset);
+    // The first whorl sits on the top of the ball: a crown there, and nowhere else so near.
+    let top = furrier::math::Vec3::Y * 0.5 * size(&baked) / 3.0_f32.sqrt();
+    let crowns: Vec<_> = baked.laid[0].singularities.iter().filter(|s| s.index == 1).collect();
+    let near = crowns.iter().map(|s| s.position_m.distance(top)).fold(f32::INFINITY, f32::min);
+    assert!(near < 0.05 * size(&baked), "{near} m from the top, {crowns:?}");
+    let told: Vec<_> = baked.warnings.iter().filter(|w| w.contains("groom.")).collect();
+    assert!(told.len() == 1 && told[0].contains("groom.whorls[1] combs nothing"), "{told:?}");
 }

@@ -13,7 +13,7 @@ use furrier::render::cast::Caster;
 use furrier::render::rays::Rays;
 use furrier::render::{DepthRange, Scene};
 use furrier::runtime::Show;
-use furrier::viewer::{Framing, Options, screenshot};
+use furrier::viewer::{Framing, Options, Subject, screenshot};
 
 const RADIUS_M: f32 = 0.1;
 const PIXELS: usize = 160;
@@ -77,7 +77,7 @@ fn drawn(preset: &Preset, show: Show, width_m: f32) -> f32 {
     bake(&request(preset.clone(), &out), &mut |_| {}).unwrap();
     let (asset, coat) = read_coat(&out).unwrap();
     let framing = Framing::Camera(camera());
-    let options = Options { size: [PIXELS as u32; 2], framing, show, ..Options::default() };
+    let options = Options { size: [PIXELS as u32; 2], framing, show: Subject::Coat(show), ..Options::default() };
     let shot = screenshot(&asset, &coat, &options).unwrap();
     ring(&shot.picture.pixels.iter().map(|p| p[3]).collect::<Vec<_>>(), width_m)
 }

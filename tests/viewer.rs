@@ -6,7 +6,7 @@ use furrier::data::camera::Camera;
 use furrier::data::coat::{Coat, CoatPrimitive, Tile};
 use furrier::math::{Vec2, Vec3, Vec4};
 use furrier::runtime::{Picture, Show};
-use furrier::viewer::{self, Framing, Options, Orbit, parse_light, parse_show, stage};
+use furrier::viewer::{self, Chart, Framing, Options, Orbit, Subject, parse_light, parse_show, stage};
 
 /// `tile` worn on every part of `asset` that is not bare, hair along the normals, no fins.
 fn dressed(asset: &Asset, tile: Tile) -> Coat {
@@ -82,7 +82,7 @@ fn shells_move_with_the_skin() {
     let camera = Camera { eye: at(eye), target: at(middle), up: [0.0, 1.0, 0.0], vfov_deg: 40.0 };
     let shot = |seconds: Option<f64>, show: Show| {
         let moment = seconds.map(|s| (animation.clone(), s));
-        let options = Options { framing: Framing::Camera(camera), show, moment, ..small() };
+        let options = Options { framing: Framing::Camera(camera), show: Subject::Coat(show), moment, ..small() };
         viewer::screenshot(&asset, &coat, &options).unwrap().picture
     };
     let difference =
@@ -150,7 +150,9 @@ fn a_report_says_what_was_drawn() {
 
 #[test]
 fn flags_are_read_or_refused() {
-    assert_eq!(parse_show("skin, fins").unwrap(), Show { skin: true, shells: false, fins: true });
+    assert_eq!(parse_show("skin, fins").unwrap(), Subject::Coat(Show { skin: true, shells: false, fins: true }));
+    assert_eq!(parse_show("stretch").unwrap(), Subject::Chart(Chart::Stretch));
+    assert!(parse_show("skin,field").unwrap_err().expected.unwrap().contains("field alone"));
     assert!(parse_show("skin,hair").unwrap_err().found.unwrap().contains("hair"));
     let light = parse_light("dir:0,-2,0:1,2,3").unwrap();
     assert_eq!((light.to_light, light.irradiance), (Vec3::Y, Vec3::new(1.0, 2.0, 3.0)));
@@ -172,4 +174,46 @@ fn flags_are_read_or_refused() {
     ] {
         assert!(Camera::from_json(bad).is_err(), "{bad}");
     }
+}
+
+/// Share of the seen pixels that `wanted` finds in a chart of the creature.
+fn charted(coat: &Coat, asset: &Asset, chart: Chart, wanted: impl Fn(Vec3) -> bool) -> (f64, Vec<String>) {
+    let options = Options { show: Subject::Chart(chart), size: [320, 240], ..small() };
+    let shot = viewer::screenshot(asset, coat, &options).unwrap();
+    let seen: Vec<Vec3> =
+        shot.picture.pixels.iter().filter(|p| p[3] > 0.99).map(|p| Vec3::new(p[0], p[1], p[2])).collect();
+    assert!(seen.len() > 500, "nothing is drawn");
+    (seen.iter().filter(|c| wanted(**c)).count() as f64 / seen.len() as f64, shot.legend)
+}
+
+#[test]
+fn charts_show_what_they_measure() {
+    let (asset, mut coat) = creature();
+    let vivid = |c: Vec3| c.max_element() > 4.0 * c.min_element().max(1e-3);
+    for (p, patch) in coat.primitives.iter_mut().flat_map(|worn| worn.patch.iter_mut().enumerate()) {
+        *patch = u32::from(p % 2 == 0);
+    }
+    let (coloured, legend) = charted(&coat, &asset, Chart::Patches, vivid);
+    assert!(coloured > 0.2, "{coloured}");
+    assert!(legend[0].starts_with("2 patches"), "{legend:?}");
+
+    // Squeeze all of the texture far beyond what the map shows: all furred skin turns yellow.
+    let yellow = |c: Vec3| c.z < 0.3 * c.x && c.y > 0.5 * c.x;
+    for uv in coat.primitives.iter_mut().flat_map(|worn| &mut worn.uv) {
+        *uv *= 50.0;
+    }
+    let (beyond, legend) = charted(&coat, &asset, Chart::Stretch, yellow);
+    assert!(beyond > 0.6, "{beyond} {legend:?}");
+    assert!(legend[1].contains("0.0 % within 0.7"), "{legend:?}");
+
+    // Hair along the normals has no direction; leaning hair has strokes, dark on light.
+    let dark = |c: Vec3| c.max_element() < 0.12;
+    let (upright, legend) = charted(&coat, &asset, Chart::Field, dark);
+    assert!(legend[1].contains("mm long"), "{legend:?}");
+    for worn in &mut coat.primitives {
+        let length = worn.offset[0].length();
+        worn.offset.iter_mut().for_each(|o| *o = (*o + Vec3::new(0.0, -0.2, -0.6) * length).normalize() * length);
+    }
+    let (leaning, _) = charted(&coat, &asset, Chart::Field, dark);
+    assert!(leaning > upright + 0.005, "{upright} {leaning}");
 }

@@ -1,9 +1,11 @@
 //! An atlas: hair grown on the parts themselves, charts of all of them in one square.
 
-use super::{Dressed, Steps, Task, skin};
+use super::{Dressed, Laid, Steps, Task, skin};
 use crate::coat::atlas::{self, judge};
+use crate::coat::measures::Measures;
 use crate::error::Result;
 use crate::fur::patch::{Parameterisation, fit_atlas, parameterise};
+use std::time::Instant;
 
 /// Texels that charts keep free around themselves: the second mip's, below which neighbouring hair looks alike anyway.
 const PADDING: u32 = 4;
@@ -19,12 +21,15 @@ pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>)
     let texels = texels.unwrap_or_else(|| (TEXELS.0 * recipe.shells.texture_size).min(TEXELS.1));
     let tile_m = recipe.shells.tile_mm * 1e-3;
     let (mut groomed, mut patches, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
+    let mut times_ms = Vec::new();
     for &part in task.parts {
         let skin = steps.run("groom", || {
             skin::groom(task.asset, &task.asset.parts[part], task.preset, task.scale.metres_per_unit)
         })?;
         let method = Parameterisation::Atlas { texels_per_tile: recipe.shells.texture_size, padding_texels: PADDING };
+        let start = Instant::now();
         let charts = steps.run("patches", || parameterise(&skin.mesh, &skin.fields.direction, tile_m, method))?;
+        times_ms.push(start.elapsed().as_secs_f64() * 1e3);
         warnings.extend(skin.notes.iter().chain(&charts.stats.warnings).cloned());
         groomed.push(skin);
         patches.push(charts);
@@ -43,7 +48,15 @@ pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>)
     let worn = (0..groomed.len())
         .map(|i| {
             let primitive = steps.run("wear", || task.wear(task.parts[i], &groomed[i], &patches[i], &tile));
-            (primitive, patches[i].stats.clone())
+            // Charts were measured in tiles; the square has its own texels.
+            let texels_per_tile = f64::from(tile_m) * f64::from(texels) / f64::from(square.edge_m);
+            let laid = Laid {
+                material: task.asset.parts[task.parts[i]].material_name.clone(),
+                singularities: groomed[i].singularities.clone(),
+                measures: Measures::new(&patches[i].stats, texels_per_tile, None),
+                ms: times_ms[i],
+            };
+            (primitive, laid)
         })
         .collect();
     // The largest skin speaks for all: each place means growing its hair again, every single one.

@@ -1,6 +1,7 @@
 //! Floor 7: the pipeline, from an asset to the same asset with a coat.
 
 mod atlas;
+mod comb;
 pub mod picture;
 mod skin;
 pub mod units;
@@ -8,11 +9,14 @@ pub mod units;
 use crate::asset::coat::{Fallback, refuse_second, write_coat};
 use crate::asset::{self, Asset, Part};
 use crate::coat::judge::{Effort, Row, coverage_table};
+use crate::coat::measures::Measures;
+use crate::coat::seams::before_after;
 use crate::coat::tile::{TileHair, TileRecipe, bake as bake_tile, leaning};
 use crate::coat::wear::wear;
 use crate::data::coat::{Coat, CoatPrimitive, Tile};
-use crate::data::patches::{Patches, Stats};
+use crate::data::patches::Patches;
 use crate::error::{Error, Result};
+use crate::fur::field::Singularity;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::patch::{Parameterisation, parameterise};
 use crate::math::Vec3;
@@ -84,12 +88,25 @@ pub struct Baked {
     pub materials: Vec<String>,
     /// Bounding diagonal that lengths refer to, m.
     pub diagonal_m: f64,
-    /// Parameterisation of each coat primitive.
-    pub patches: Vec<Stats>,
+    /// Comb and parameterisation of each coat primitive.
+    pub laid: Vec<Laid>,
     /// Coverage of each tile against its strands, when asked for.
     pub accuracy: Vec<Vec<Row>>,
     /// Time per step, in order.
     pub timings: Vec<Timing>,
+}
+
+/// How one primitive's hair lies.
+#[derive(Clone, Debug)]
+pub struct Laid {
+    /// Its material.
+    pub material: String,
+    /// Where its comb has no direction.
+    pub singularities: Vec<Singularity>,
+    /// How well the texture lies; its seams where the bake is judged.
+    pub measures: Measures,
+    /// Wall time of laying it out, ms.
+    pub ms: f64,
 }
 
 /// Measures steps and tells of them.
@@ -140,7 +157,7 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
         warnings: Vec::new(),
         materials: names(chosen.iter().map(|&i| &asset.parts[i])),
         diagonal_m: scale.diagonal_m,
-        patches: Vec::new(),
+        laid: Vec::new(),
         accuracy: Vec::new(),
         timings: Vec::new(),
     };
@@ -153,7 +170,7 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
             None => tiles.push((preset, vec![index])),
         }
     }
-    let mut worn: Vec<(usize, CoatPrimitive, Stats)> = Vec::new();
+    let mut worn: Vec<(usize, CoatPrimitive, Laid)> = Vec::new();
     for (tile, (preset, parts)) in tiles.iter().enumerate() {
         let task = Task { asset: &asset, preset, parts, request, scale: &scale };
         let dressed = match request.method {
@@ -163,20 +180,25 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
         };
         warnings.extend(units::length_warning(dressed.tile.height_m, scale.diagonal_m));
         notes.extend(dressed.notes);
-        warnings.extend(dressed.warnings);
+        for warning in dressed.warnings {
+            // What is said of the whole asset is said once.
+            if !warnings.contains(&warning) {
+                warnings.push(warning);
+            }
+        }
         baked.accuracy.extend(dressed.accuracy);
         coat.tiles.push(dressed.tile);
         worn.extend(
             parts
                 .iter()
                 .zip(dressed.worn)
-                .map(|(&index, (primitive, stats))| (index, CoatPrimitive { tile, ..primitive }, stats)),
+                .map(|(&index, (primitive, laid))| (index, CoatPrimitive { tile, ..primitive }, laid)),
         );
     }
     worn.sort_by_key(|(index, ..)| *index);
-    for (_, primitive, stats) in worn {
+    for (_, primitive, laid) in worn {
         coat.primitives.push(primitive);
-        baked.patches.push(stats);
+        baked.laid.push(laid);
     }
     notes.extend(steps.run("write", || write_coat(&asset, &coat, request.fallback, &request.out))?);
     baked.coat = coat;
@@ -199,7 +221,7 @@ struct Task<'a> {
 struct Dressed {
     tile: Tile,
     /// One per part of the task.
-    worn: Vec<(CoatPrimitive, Stats)>,
+    worn: Vec<(CoatPrimitive, Laid)>,
     accuracy: Option<Vec<Row>>,
     notes: Vec<String>,
     warnings: Vec<String>,
@@ -256,11 +278,23 @@ fn dress(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: &mut 
             skin::groom(task.asset, &task.asset.parts[part], task.preset, task.scale.metres_per_unit)
         })?;
         let direction = &groomed.fields.direction;
+        let start = Instant::now();
         let patches =
             steps.run("patches", || parameterise(&groomed.mesh, direction, edge_m, method(task.seed(part))))?;
+        let ms = start.elapsed().as_secs_f64() * 1e3;
         dressed.warnings.extend(groomed.notes.iter().chain(&patches.stats.warnings).cloned());
-        let worn = steps.run("wear", || task.wear(part, &groomed, &patches, &dressed.tile));
-        dressed.worn.push((worn, patches.stats));
+        let tile = &dressed.tile;
+        let seams = request.judge.then(|| {
+            steps.run("judge seams", || before_after(&groomed.mesh, &groomed.offsets(), &patches, tile).into())
+        });
+        let worn = steps.run("wear", || task.wear(part, &groomed, &patches, tile));
+        let laid = Laid {
+            material: task.asset.parts[part].material_name.clone(),
+            singularities: groomed.singularities,
+            measures: Measures::new(&patches.stats, f64::from(tile.shells.size), seams),
+            ms,
+        };
+        dressed.worn.push((worn, laid));
     }
     Ok(dressed)
 }

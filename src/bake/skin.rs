@@ -1,13 +1,15 @@
 //! One part made ready to wear fur: its mesh in metres and the fields on it.
 
+use super::comb::comb;
 use crate::asset::material::BaseColour;
 use crate::asset::{Asset, Part, Pose, image};
+use crate::coat::wear::offset_over_height;
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::error::Result;
-use crate::fur::field::{FieldSource, directions};
-use crate::fur::groom::maps::{Maps, comb_directions};
-use crate::fur::groom::{ColourSource, Comb, fields};
+use crate::fur::field::Singularity;
+use crate::fur::groom::maps::Maps;
+use crate::fur::groom::{ColourSource, fields};
 use crate::math::{Vec3, Vec4};
 use crate::preset::{self, Preset};
 
@@ -18,8 +20,17 @@ pub struct Groomed {
     pub mesh: Mesh,
     /// The fields on it.
     pub fields: Fields,
+    /// Where the comb has no direction, in the rest pose.
+    pub singularities: Vec<Singularity>,
     /// One sentence each.
     pub notes: Vec<String>,
+}
+
+impl Groomed {
+    /// Root to the top of the stack over the stack's height, one per vertex, world axes.
+    pub fn offsets(&self) -> Vec<Vec3> {
+        (0..self.fields.lean.len()).map(|v| offset_over_height(&self.fields, v)).collect()
+    }
 }
 
 /// Gathers everything that decides how hair lies on `part`.
@@ -30,9 +41,10 @@ pub fn groom(asset: &Asset, part: &Part, preset: &Preset, metres_per_unit: f64) 
     if !maps.is_empty() && mesh.uv_sets.is_empty() {
         notes.push(format!("material {:?} has no texture coordinates: groom maps are left out", part.material_name));
     }
-    let comb = comb(&mesh, preset, &maps)?;
+    let comb = comb(asset, &mesh, &preset.groom, &maps, metres_per_unit, &mut notes)?;
     let tint = tint(asset, part, &mesh, preset)?;
-    Ok(Groomed { fields: fields::gather(&mesh, &preset.groom, &maps, comb, tint), mesh, notes })
+    let fields = fields::gather(&mesh, &preset.groom, &maps, comb.direction, tint);
+    Ok(Groomed { fields, mesh, singularities: comb.singularities, notes })
 }
 
 impl Groomed {
@@ -43,7 +55,7 @@ impl Groomed {
     /// Where the pose takes a vertex beyond what f32 can hold.
     pub fn pose(self, asset: &Asset, part: &Part, pose: &Pose, metres_per_unit: f64) -> Result<Self> {
         let posed = part.posed(asset, pose, part.nodes[0], metres_per_unit);
-        let Self { mesh, mut fields, notes } = self;
+        let Self { mesh, mut fields, singularities, notes } = self;
         let turned = |v: usize, direction: Vec3| {
             let local = part.local_from_world(v) * (direction.as_dvec3() / metres_per_unit);
             posed.world_from_offset[v].as_dmat3() * local
@@ -58,7 +70,7 @@ impl Groomed {
         if posed.mirrored != part.mirrored() {
             mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
         }
-        Ok(Self { mesh: mesh.checked()?, fields, notes })
+        Ok(Self { mesh: mesh.checked()?, fields, singularities, notes })
     }
 }
 
@@ -71,24 +83,6 @@ fn decode(maps: &preset::Maps) -> Result<Maps> {
         colour: load(&maps.colour)?,
         clump: load(&maps.clump)?,
     })
-}
-
-/// The comb direction per vertex: painted map, then vertex attribute, then the preset's.
-fn comb(mesh: &Mesh, preset: &Preset, maps: &Maps) -> Result<Vec<Vec3>> {
-    let mut sources = Vec::new();
-    if let (Some(map), Some(uv)) = (&maps.comb, mesh.uv_sets.first()) {
-        sources.push(FieldSource::Vertices(comb_directions(mesh, uv, map)));
-    }
-    if let Some(attribute) = &mesh.fur_direction {
-        sources.push(FieldSource::Vertices(attribute.clone()));
-    }
-    match preset.groom.comb {
-        Comb::Upright if sources.is_empty() => return Ok(vec![Vec3::ZERO; mesh.positions_m.len()]),
-        Comb::Upright => {}
-        Comb::Gravity => sources.push(FieldSource::Gravity),
-        Comb::Tailward => sources.push(FieldSource::Tailward { sag: 0.3 }),
-    }
-    Ok(directions(mesh, &sources)?.direction)
 }
 
 /// Hair colour per vertex: base-colour texture, factor and vertex colours; the preset's tint where the asset has none.

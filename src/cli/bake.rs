@@ -4,7 +4,7 @@ use super::console::Console;
 use super::output;
 use crate::asset::coat::Fallback;
 use crate::bake::units::Units;
-use crate::bake::{Baked, Method, Request, bake};
+use crate::bake::{Baked, Laid, Method, Request, bake};
 use crate::coat::summary::{Summary, summarise};
 use crate::error::{Error, Result};
 use crate::metrics::timing::{SCHEMA_VERSION, Step, peak_bytes};
@@ -248,7 +248,7 @@ fn in_pool<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Re
 /// What `--report` writes.
 fn report(baked: &Baked, total_ms: f64) -> Value {
     let steps: Vec<_> = baked.timings.iter().map(|t| Step { name: t.name.to_owned(), ms: t.ms, bytes: 0 }).collect();
-    let patches: Vec<_> = baked.patches.iter().map(patch_measures).collect();
+    let patches: Vec<_> = baked.laid.iter().map(laid_out).collect();
     let summary = summarise(&baked.coat);
     json!({
         "schema_version": SCHEMA_VERSION,
@@ -270,18 +270,9 @@ fn report(baked: &Baked, total_ms: f64) -> Value {
     })
 }
 
-/// The measures of one primitive's parameterisation (`docs/steps/patch.md`).
-fn patch_measures(stats: &crate::data::patches::Stats) -> Value {
-    let spread = |s: &crate::data::patches::Spread| json!({ "mean": s.mean, "p5": s.p5, "p95": s.p95 });
-    json!({
-        "patches": stats.patches,
-        "faces": stats.faces,
-        "area_m2": stats.area_m2,
-        "singular_values": spread(&stats.singular_values),
-        "share_within_0.7_to_1.4": stats.within,
-        "field_angle_deg": stats.field_angle_rad.to_degrees(),
-        "tiles_per_m": spread(&stats.tiles_per_m),
-        "mirrored_m2": stats.mirrored_m2,
-        "overlapped_m2": stats.overlapped_m2,
-    })
+/// One primitive's comb and parameterisation (`docs/steps/field.md`, `docs/steps/patch.md`).
+fn laid_out(laid: &Laid) -> Value {
+    let singularities: Vec<_> =
+        laid.singularities.iter().map(|s| json!({ "index": s.index, "position_m": s.position_m.to_array() })).collect();
+    json!({ "material": laid.material, "ms": laid.ms, "measures": laid.measures, "singularities": singularities })
 }

@@ -2,12 +2,14 @@
 
 use super::console::Console;
 use crate::asset;
+use crate::coat::measures::{Measures, Range};
 use crate::coat::summary::{SCREEN, Summary, summarise};
 use crate::error::Result;
 use clap::Args;
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::PathBuf;
+use std::time::Instant;
 
 /// Say what the coat of a file holds and costs
 #[derive(Debug, Args)]
@@ -27,6 +29,10 @@ struct Inspection {
     /// Material of each coat primitive, in their order.
     materials: Vec<String>,
     coat: Summary,
+    /// How well each coat primitive lies on its skin, in their order.
+    measures: Vec<Measures>,
+    /// How long measuring took, ms.
+    measured_in_ms: f64,
 }
 
 impl Inspect {
@@ -41,7 +47,10 @@ impl Inspect {
             part.map_or_else(String::new, |part| part.material_name.clone())
         };
         let materials = coat.primitives.iter().map(|worn| material(worn.mesh, worn.primitive)).collect();
-        let inspection = Inspection { file: self.file, materials, coat: summarise(&coat) };
+        let start = Instant::now();
+        let measures = Measures::all(&asset, &coat)?;
+        let measured_in_ms = start.elapsed().as_secs_f64() * 1e3;
+        let inspection = Inspection { file: self.file, materials, coat: summarise(&coat), measures, measured_in_ms };
         console.result(&inspection, |out| print(&inspection, out))
     }
 }
@@ -49,12 +58,15 @@ impl Inspect {
 fn print(inspection: &Inspection, out: &mut dyn Write) -> io::Result<()> {
     let coat = &inspection.coat;
     writeln!(out, "{}", inspection.file.display())?;
-    for (worn, material) in coat.primitives.iter().zip(&inspection.materials) {
+    for (i, (worn, material)) in coat.primitives.iter().zip(&inspection.materials).enumerate() {
         writeln!(
             out,
             "  {material}: {} triangles, {} coat vertices, {} patches, {} fins, tile {}",
             worn.triangles, worn.vertices, worn.patches, worn.fins, worn.tile
         )?;
+        if let Some(measures) = inspection.measures.get(i) {
+            lies(measures, out)?;
+        }
     }
     for (i, tile) in coat.tiles.iter().enumerate() {
         writeln!(
@@ -83,6 +95,31 @@ fn print(inspection: &Inspection, out: &mut dyn Write) -> io::Result<()> {
         coat.drawn_triangles,
         coat.draw_calls,
         megabytes(coat.vram_bytes)
+    )
+}
+
+/// How the texture lies on the skin.
+fn lies(m: &Measures, out: &mut dyn Write) -> io::Result<()> {
+    let range = |r: &Range| format!("{:.3} ({:.3} to {:.3})", r.mean, r.p5, r.p95);
+    let doubled = if m.faces_doubled > 0 { format!(", {} MORE THAN ONCE", m.faces_doubled) } else { String::new() };
+    writeln!(
+        out,
+        "    covers {} triangles once{doubled}, leaves {} bare; {:.0} cm²",
+        m.faces, m.faces_bare, m.area_cm2
+    )?;
+    writeln!(
+        out,
+        "    stretch {}, {:.1} % of the skin within 0.7 to 1.4; {:.1}° from the hair; {} texels per mm",
+        range(&m.singular_values),
+        100.0 * m.share_within,
+        m.field_angle_deg,
+        range(&m.texels_per_mm)
+    )?;
+    let Some(seams) = &m.seams else { return Ok(()) };
+    writeln!(
+        out,
+        "    seams {:.0} cm; across them {:.2} of what chance would show, {:.2} as sharp as the rest",
+        m.seams_cm, seams.worn.difference_over_fake, seams.worn.variance_over_interior
     )
 }
 

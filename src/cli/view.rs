@@ -18,6 +18,7 @@ Examples:
   furrier view furry.glb --screenshot furry.png
   furrier view furry.glb --screenshot walk.png --animation Walk --time 0.4 --orbit 70,10,0.8
   furrier view furry.glb --screenshot around.png --turntable 8 --size 256x256
+  furrier view furry.glb --screenshot stretch.png --show stretch
   furrier view furry.glb --screenshot fins.png --show skin,fins --light dir:0,-1,-1:3,3,3 --ambient 0.2,0.2,0.2
 
 A camera file is JSON: {\"eye\": [x, y, z], \"target\": [x, y, z], \"up\": [x, y, z], \"vfov_deg\": 40}, in metres; the last
@@ -31,8 +32,9 @@ pub struct View {
     /// Pixels
     #[arg(long, value_name = "WxH", default_value = "1024x1024")]
     size: String,
-    /// What to draw
-    #[arg(long, value_name = "skin,shells,fins", default_value = "skin,shells,fins")]
+    /// What to draw: parts of the coat, or how it lies: the hair's direction and length, the patches of its texture, or
+    /// their stretch
+    #[arg(long, value_name = "skin,shells,fins|field|patches|stretch", default_value = "skin,shells,fins")]
     show: String,
     /// Degrees around and above, and a factor on the distance at which the asset just fits [default: 35,12,1]
     #[arg(long, value_name = "AZ,EL,DIST", allow_hyphen_values = true, conflicts_with = "camera")]
@@ -88,7 +90,13 @@ impl View {
         }
         let device = &shot.report.device;
         let (width, height) = (shot.image.width, shot.image.height);
-        let outcome = json!({ "screenshot": self.screenshot, "size": [width, height], "report": shot.report });
+        shot.legend.iter().for_each(|line| console.note(line));
+        let outcome = json!({
+            "screenshot": self.screenshot,
+            "size": [width, height],
+            "legend": shot.legend,
+            "report": shot.report,
+        });
         console.result(&outcome, |out| {
             writeln!(out, "{}: {width} × {height}, drawn by {device}", self.screenshot.display())
         })

@@ -3,6 +3,8 @@
 pub mod atlas;
 pub mod fins;
 pub mod judge;
+pub mod measures;
+pub mod seams;
 pub mod shells;
 pub mod summary;
 pub mod tile;

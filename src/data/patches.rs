@@ -15,6 +15,9 @@ pub struct Patches {
     pub triangles: Vec<[u32; 3]>,
     /// Width and height that hold all charts without overlap, in tiles; zero where texels are not unique.
     pub extent: Vec2,
+    /// Coordinates before anything was done against seams, every patch where chance put it in its tile; empty where nothing
+    /// was done.
+    pub chance_uv: Vec<Vec2>,
     /// How good they are.
     pub stats: Stats,
 }
@@ -32,6 +35,14 @@ pub struct Square {
     pub charts: Vec<Vec<[u32; 4]>>,
 }
 
+impl Patches {
+    /// The same patches where chance put them, before anything was done against seams.
+    pub fn by_chance(&self) -> Self {
+        let uv = if self.chance_uv.is_empty() { &self.uv } else { &self.chance_uv };
+        Self { uv: uv.clone(), ..self.clone() }
+    }
+}
+
 /// Mean and the 5th and 95th percentile, weighted by skin area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
@@ -41,6 +52,19 @@ pub struct Spread {
     pub p5: f64,
     /// 95th percentile.
     pub p95: f64,
+}
+
+/// How much seams show (`docs/steps/patch.md`). Ratios are means over three views, 1 where there is nothing to compare.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seams {
+    /// Borders between patches and cuts within them: edges whose sides have coordinates of their own.
+    pub edges: usize,
+    /// Mean squared difference across seams over that across fake borders: 1 is as random as the tile, less is better.
+    pub difference: f64,
+    /// Variance within windows along seams over that inside patches: 1 is as sharp as the rest.
+    pub variance: f64,
+    /// Both, view by view.
+    pub by_view: [[f64; 2]; 3],
 }
 
 /// What a parameterisation does to the skin (`docs/steps/patch.md`). Triangles without area have no part in it.

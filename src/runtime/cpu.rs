@@ -4,14 +4,18 @@
 //! unit tangents and O is the coat's offset over the stack's height. Hair keeps its diameter under that map, so the
 //! medium changes with it (`docs/steps/shells.md`).
 
-use crate::data::coat::{GAIN_ANGLES_DEG, Sampled, Tile};
-use crate::data::image::Image8;
+use crate::data::coat::{GAIN_ANGLES_DEG, Sampled, ShellStack, Tile};
+use crate::data::image::linear_from_srgb;
 use crate::math::{Mat3, Vec2, Vec3};
+use crate::shade::light::luminance;
 
 /// Steepest view that the law is evaluated at: cos 87°.
 const LEAST_COSINE: f32 = 0.052;
 /// Longest anisotropic fetch in taps, as graphics hardware has it.
 const MAX_TAPS: f32 = 16.0;
+
+/// What lies behind hair that lets less than this through is not looked at.
+const HIDDEN: f32 = 1e-3;
 
 /// A texel as a shader sees it after filtering.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,6 +26,8 @@ pub struct Texel {
     pub tangent: Vec3,
     /// End opacity 1 − e^−κ.
     pub ends: f32,
+    /// Luminance of the albedo times the transmittance to the outside: how bright the hair is under a light above it.
+    pub brightness: f32,
 }
 
 /// A stack with its texels decoded.
@@ -83,15 +89,10 @@ pub fn slab_optical_depth(texel: &Texel, view: &View, slab_m: f32) -> f32 {
 impl<'a> Stack<'a> {
     /// Decodes a tile's shells.
     pub fn new(tile: &'a Tile) -> Self {
-        let stack = &tile.shells;
-        let texels = (0..stack.medium.len())
-            .map(|mip| {
-                (0..stack.layers as usize)
-                    .map(|layer| {
-                        decode(&stack.medium[mip][layer], &stack.ends[mip][layer], stack.extinction_scales_per_m[mip])
-                    })
-                    .collect()
-            })
+        let linear = std::array::from_fn(|byte| linear_from_srgb(byte as f32 / 255.0));
+        let layers = 0..tile.shells.layers as usize;
+        let texels = (0..tile.shells.medium.len())
+            .map(|mip| layers.clone().map(|layer| decode(&tile.shells, mip, layer, &linear)).collect())
             .collect();
         Self { tile, texels }
     }
@@ -179,6 +180,51 @@ impl<'a> Stack<'a> {
         low + (at(level.floor() as usize + 1) - low) * level.fract()
     }
 
+    /// Luminance that leaves the stack towards the eye along the view ray through `uv`, under a light of radiosity 1
+    /// above: slabs from the outside in, each by its opacity, then the skin. Hair stands `density` times as dense as in the
+    /// tile.
+    ///
+    /// Fetches take the nearest texel of the nearest mip, not eight: means over many pixels are what this is for.
+    pub fn brightness(&self, uv: Vec2, view: &View, density: f32) -> f32 {
+        let gain = self.gain(view) * density;
+        let d = view.in_tile();
+        let (slope, slab_m) = (Vec2::new(d.x, d.y) / d.z, self.slab_m());
+        let per_edge = slab_m / self.tile.edge_m;
+        let (mut through, mut seen) = (1.0, 0.0);
+        for layer in (1..self.tile.shells.layers as usize).rev() {
+            if through < HIDDEN {
+                return seen;
+            }
+            let centre = uv + slope * ((layer as f32 - 0.5) * per_edge);
+            let run = (slope - self.tile.shells.slopes[layer]) * per_edge;
+            let texel = self.fetch_nearest(layer, centre, run, view.pixel);
+            let clear = libm::expf(-gain * slab_optical_depth(&texel, view, slab_m));
+            seen += through * (1.0 - clear) * texel.brightness;
+            through *= clear;
+        }
+        seen + through * self.nearest(0, 0, uv).brightness
+    }
+
+    fn fetch_nearest(&self, layer: usize, centre: Vec2, run: Vec2, pixel: f32) -> Texel {
+        let major = (pixel * pixel + run.length_squared()).sqrt();
+        let taps = (major / pixel).ceil().clamp(1.0, MAX_TAPS);
+        let level = libm::log2f((major / taps * self.tile.shells.size as f32).max(1.0)).round();
+        let mip = (level as usize).min(self.mips() - 1);
+        let axis = run.normalize_or_zero() * (major - pixel).max(0.0);
+        let mut sum = Texel::default();
+        for tap in 0..taps as usize {
+            sum.add(self.nearest(mip, layer, centre + axis * ((tap as f32 + 0.5) / taps - 0.5)), 1.0 / taps);
+        }
+        sum
+    }
+
+    fn nearest(&self, mip: usize, layer: usize, uv: Vec2) -> &Texel {
+        let size = (self.tile.shells.size >> mip).max(1) as i64;
+        let at = (uv * size as f32).floor();
+        let (x, y) = (at.x as i64 & (size - 1), at.y as i64 & (size - 1));
+        &self.texels[mip][layer][(y * size + x) as usize]
+    }
+
     /// Coverage of the whole stack along the view ray through `uv`.
     pub fn coverage(&self, uv: Vec2, view: &View) -> f32 {
         -libm::expm1f(-self.gain(view) * self.optical_depth(uv, view))
@@ -190,19 +236,24 @@ impl Texel {
         self.extinction += other.extinction * weight;
         self.tangent += other.tangent * weight;
         self.ends += other.ends * weight;
+        self.brightness += other.brightness * weight;
     }
 }
 
-fn decode(medium: &Image8, ends: &Image8, scale_per_m: f32) -> Vec<Texel> {
+fn decode(stack: &ShellStack, mip: usize, layer: usize, linear: &[f32; 256]) -> Vec<Texel> {
     let unorm = |byte: u8| f32::from(byte) / 255.0;
     let signed = |byte: u8| (f32::from(byte) - 128.0) / 127.0;
+    let scale_per_m = stack.extinction_scales_per_m[mip];
+    let (medium, ends, albedo) = (&stack.medium[mip][layer], &stack.ends[mip][layer], &stack.albedo[mip][layer]);
     (0..ends.pixels.len())
         .map(|i| {
             let m = &medium.pixels[4 * i..4 * i + 4];
+            let a = &albedo.pixels[4 * i..4 * i + 4];
             Texel {
                 extinction: unorm(m[0]) * scale_per_m,
                 tangent: Vec3::new(signed(m[1]), signed(m[2]), signed(m[3])) * scale_per_m,
                 ends: unorm(ends.pixels[i]),
+                brightness: luminance(Vec3::from_array([0, 1, 2].map(|c| linear[usize::from(a[c])]))) * unorm(a[3]),
             }
         })
         .collect()

@@ -1,11 +1,13 @@
-//! Floor 8: pictures of a coat: one, or several around it on a contact sheet.
+//! Floor 8: pictures of a coat or of how it lies: one, or several around it on a contact sheet.
 
 pub mod camera;
+pub mod chart;
 pub mod develop;
 pub mod light;
 pub mod stage;
 
 pub use camera::{Framing, Orbit};
+pub use chart::Chart;
 pub use develop::Background;
 pub use light::{parse_light, parse_triple};
 
@@ -34,7 +36,7 @@ pub struct Options {
     /// Radiance from everywhere, linear RGB; `None` means the studio's, or none where lights are given.
     pub ambient: Option<Vec3>,
     /// What to draw.
-    pub show: Show,
+    pub show: Subject,
     /// Animation by name or number, and seconds into it; `None` is the rest pose.
     pub moment: Option<(String, f64)>,
     /// Shading samples along a pixel's edge, 1 to 8. Edges are sampled four times as often in any case.
@@ -51,11 +53,26 @@ impl Default for Options {
             framing: Framing::default(),
             lights: vec![],
             ambient: None,
-            show: Show::default(),
+            show: Subject::default(),
             moment: None,
             samples: 1,
             background: Background::default(),
         }
+    }
+}
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// The coat as a game draws it.
+    Coat(Show),
+    /// How it lies.
+    Chart(Chart),
+}
+
+impl Default for Subject {
+    fn default() -> Self {
+        Self::Coat(Show::default())
     }
 }
 
@@ -68,28 +85,45 @@ pub struct Shot {
     pub image: Image8,
     /// Steps, counts, device.
     pub report: Report,
+    /// What the colours of a chart mean, one sentence each.
+    pub legend: Vec<String>,
 }
 
-/// Reads `--show`: some of `skin`, `shells`, `fins`, with commas between.
+/// Reads `--show`: some of `skin`, `shells`, `fins`, with commas between, or one of `field`, `patches`, `stretch` alone.
 ///
 /// # Errors
-/// Names the word that is none of them.
-pub fn parse_show(text: &str) -> Result<Show> {
+/// Names the word that is none of them, or a chart that is not alone.
+pub fn parse_show(text: &str) -> Result<Subject> {
+    let chart = |word: &str| match word {
+        "field" => Some(Chart::Field),
+        "patches" => Some(Chart::Patches),
+        "stretch" => Some(Chart::Stretch),
+        _ => None,
+    };
+    if let Some(chart) = chart(text.trim()) {
+        return Ok(Subject::Chart(chart));
+    }
     let mut show = Show { skin: false, shells: false, fins: false };
     for word in text.split(',').map(str::trim) {
         match word {
             "skin" => show.skin = true,
             "shells" => show.shells = true,
             "fins" => show.fins = true,
+            _ if chart(word).is_some() => {
+                return Err(Error::usage("field, patches and stretch are pictures by themselves")
+                    .with_field("--show")
+                    .with_found(text)
+                    .with_expected(format!("{word} alone, or some of skin, shells, fins")));
+            }
             _ => {
                 return Err(Error::usage("there is no such thing to show")
                     .with_field("--show")
                     .with_found(word)
-                    .with_expected("skin, shells, fins, with commas between"));
+                    .with_expected("skin, shells, fins, with commas between; or one of field, patches, stretch"));
             }
         }
     }
-    Ok(show)
+    Ok(Subject::Coat(show))
 }
 
 /// One picture of `asset` wearing `coat`.
@@ -101,7 +135,7 @@ pub fn screenshot(asset: &Asset, coat: &Coat, options: &Options) -> Result<Shot>
     let mut shots = shoot(asset, coat, options, &[options.framing])?;
     let picture = shots.pictures.remove(0);
     let image = shots.recorder.step("develop", || develop::develop(&picture, options.background), bytes_of);
-    Ok(Shot { picture, image, report: shots.recorder.finish() })
+    Ok(Shot { picture, image, report: shots.recorder.finish(), legend: shots.legend })
 }
 
 /// A contact sheet of `views` pictures, 1 to 64, evenly around the asset, row by row.
@@ -127,7 +161,7 @@ pub fn turntable(asset: &Asset, coat: &Coat, options: &Options, views: u32) -> R
     let columns = f64::from(views).sqrt().ceil() as u32;
     let picture = sheet(&shots.pictures, columns);
     let image = shots.recorder.step("develop", || develop::develop(&picture, options.background), bytes_of);
-    Ok(Shot { picture, image, report: shots.recorder.finish() })
+    Ok(Shot { picture, image, report: shots.recorder.finish(), legend: shots.legend })
 }
 
 fn bytes_of(image: &Image8) -> u64 {
@@ -137,6 +171,7 @@ fn bytes_of(image: &Image8) -> u64 {
 struct Shots {
     pictures: Vec<Picture>,
     recorder: Recorder,
+    legend: Vec<String>,
 }
 
 fn shoot(asset: &Asset, coat: &Coat, options: &Options, framings: &[Framing]) -> Result<Shots> {
@@ -152,7 +187,17 @@ fn shoot(asset: &Asset, coat: &Coat, options: &Options, framings: &[Framing]) ->
         || stage::textures(asset),
         |decoded| decoded.as_ref().map_or(0, |all| all.values().map(bytes_of).sum()),
     )?;
-    let scene = recorder.step("pose", || stage::scene(asset, coat, &textures, &pose), |_| 0);
+    let outline = chart::tile_outline();
+    let drawing = |chart| {
+        let chart::Drawing { scene, legend } = chart::draw(asset, coat, &pose, chart, &outline)?;
+        Ok((scene, Show { skin: true, shells: false, fins: false }, legend))
+    };
+    let staged = || match options.show {
+        Subject::Coat(show) => Ok((stage::scene(asset, coat, &textures, &pose), show, Vec::new())),
+        Subject::Chart(chart) => drawing(chart),
+    };
+    let (scene, show, legend) = recorder.step("pose", staged, |_| 0)?;
+    let charted = matches!(options.show, Subject::Chart(_));
     let origin_m = asset.parts.first().map_or(DVec3::ZERO, |part| part.centre_units * coat.metres_per_unit);
     let points_m = stage::points_m(&scene);
     let renderer = recorder.step(
@@ -166,17 +211,23 @@ fn shoot(asset: &Asset, coat: &Coat, options: &Options, framings: &[Framing]) ->
         let camera = framing.camera(&points_m, origin_m, aspect).checked()?;
         let [near_m, far_m] = camera::depth_range_m(&camera, &points_m, origin_m);
         let studio = options.lights.is_empty();
+        let (lights, ambient) = if charted {
+            let forward = DVec3::from(camera.target) - DVec3::from(camera.eye);
+            (vec![chart::light(forward.as_vec3().normalize_or(Vec3::NEG_Z))], chart::AMBIENT)
+        } else {
+            (light::studio(&camera), light::STUDIO_AMBIENT)
+        };
         let view = View {
             clip_from_world: camera.clip_from_world(origin_m, aspect, near_m, far_m).as_mat4(),
             eye: (DVec3::from(camera.eye) - origin_m).as_vec3().extend(1.0),
             size: options.size,
-            lights: if studio { light::studio(&camera) } else { options.lights.clone() },
-            ambient: options.ambient.unwrap_or(if studio { light::STUDIO_AMBIENT } else { Vec3::ZERO }),
+            lights: if studio { lights } else { options.lights.clone() },
+            ambient: options.ambient.unwrap_or(if studio { ambient } else { Vec3::ZERO }),
         };
-        let drawn = draw(&renderer, &scene, &view, options.show, &mut recorder)?;
+        let drawn = draw(&renderer, &scene, &view, show, &mut recorder)?;
         pictures.push(drawn.picture);
     }
-    Ok(Shots { pictures, recorder })
+    Ok(Shots { pictures, recorder, legend })
 }
 
 fn draw(renderer: &Renderer<'_>, scene: &Scene<'_>, view: &View, show: Show, recorder: &mut Recorder) -> Result<Drawn> {

@@ -55,7 +55,8 @@ pub fn points_m(scene: &Scene<'_>) -> Vec<Vec3> {
     skins.chain(tips).filter(|p| p.is_finite()).collect()
 }
 
-fn fur<'a>(posed: &Posed, worn: &'a CoatPrimitive) -> Fur<'a> {
+/// What a part wears in its pose.
+pub(super) fn fur<'a>(posed: &Posed, worn: &'a CoatPrimitive) -> Fur<'a> {
     let at = |list: &[Vec3]| worn.base_vertex.iter().map(|&v| list[v as usize]).collect();
     let offsets_m = worn
         .base_vertex
@@ -101,8 +102,13 @@ fn furred_skin<'a>(part: &Part, posed: &Posed, worn: &CoatPrimitive, tile: &Tile
     }
 }
 
-/// The triangles of a part that no coat covers.
+/// A part where no coat covers it.
 fn bare_skin<'a>(part: &Part, posed: &Posed, worn: &[&CoatPrimitive], textures: &'a Textures) -> Skin<'a> {
+    Skin { triangles: uncovered(part, worn), ..surface(part, posed, textures) }
+}
+
+/// The triangles of a part that no coat covers.
+pub(super) fn uncovered(part: &Part, worn: &[&CoatPrimitive]) -> Vec<[u32; 3]> {
     let sorted = |mut triangle: [u32; 3]| {
         triangle.sort_unstable();
         triangle
@@ -111,8 +117,7 @@ fn bare_skin<'a>(part: &Part, posed: &Posed, worn: &[&CoatPrimitive], textures: 
         .iter()
         .flat_map(|worn| worn.triangles.iter().map(|t| sorted(t.map(|v| worn.base_vertex[v as usize]))))
         .collect();
-    let triangles = part.stored.triangles.iter().copied().filter(|&t| !covered.contains(&sorted(t))).collect();
-    Skin { triangles, ..surface(part, posed, textures) }
+    part.stored.triangles.iter().copied().filter(|&t| !covered.contains(&sorted(t))).collect()
 }
 
 /// Vertices of a part with their base colour; no triangles.

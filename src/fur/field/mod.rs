@@ -12,6 +12,7 @@ use smooth::{Hold, smooth};
 use source::wishes;
 
 pub use singular::Singularity;
+pub use source::distance_to_line;
 
 /// A point that hair turns around. Lengths and places are in the mesh's frame, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,6 +78,11 @@ pub fn directions(mesh: &Mesh, sources: &[FieldSource]) -> Result<DirectionField
     let direction = smooth(mesh, &normals, &wishes);
     let singularities = singular::find(mesh, &normals, &direction);
     Ok(DirectionField { direction, singularities, filled })
+}
+
+/// Where `direction` (one per vertex, the same at all vertices of one place) turns round itself.
+pub fn singularities(mesh: &Mesh, direction: &[Vec3]) -> Vec<Singularity> {
+    singular::find(mesh, &mesh.smooth_normals(), direction)
 }
 
 fn check(mesh: &Mesh, source: &FieldSource) -> Result<()> {

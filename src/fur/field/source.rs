@@ -37,11 +37,11 @@ fn one(mesh: &Mesh, normals: &[Vec3], source: &FieldSource, v: usize) -> Wish {
             }
         }
         FieldSource::Strokes { lines_m, reach_m } => {
-            let segments =
-                lines_m.iter().flat_map(|line| line.windows(2)).map(|ends| (distance(p, ends[0], ends[1]), ends));
-            match segments.min_by(|a, b| a.0.total_cmp(&b.0)) {
-                Some((distance, ends)) if distance < *reach_m => kept(ends[1] - ends[0], n),
-                _ => Wish::default(),
+            let near = |ends: &&[Vec3]| distance(p, ends[0], ends[1]) < *reach_m;
+            let segments = lines_m.iter().flat_map(|line| line.windows(2)).filter(near);
+            match segments.min_by(|a, b| distance(p, a[0], a[1]).total_cmp(&distance(p, b[0], b[1]))) {
+                Some(ends) => kept(ends[1] - ends[0], n),
+                None => Wish::default(),
             }
         }
     }
@@ -74,6 +74,14 @@ fn turning(whorl: &Whorl, p: Vec3, n: Vec3) -> Wish {
     let out = p - whorl.centre_m;
     let (sin, cos) = (libm::sinf(whorl.spin_rad), libm::cosf(whorl.spin_rad));
     kept(out * cos + n.cross(out) * sin, n)
+}
+
+/// Distance of `p` to a polyline, or to its one point; infinite for none.
+pub fn distance_to_line(p: Vec3, line: &[Vec3]) -> f32 {
+    match line {
+        [only] => p.distance(*only),
+        _ => line.windows(2).map(|ends| distance(p, ends[0], ends[1])).fold(f32::INFINITY, f32::min),
+    }
 }
 
 fn distance(p: Vec3, a: Vec3, b: Vec3) -> f32 {

@@ -1,6 +1,7 @@
 //! The parameters of a coat's hair. One definition serves presets, defaults and help.
 
 pub mod clump;
+mod comb;
 pub mod fibre;
 pub mod fields;
 pub mod hair;
@@ -9,6 +10,8 @@ pub mod maps;
 use crate::math::Vec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+pub use comb::{Comb, Line, Place, Stroke, Whorl};
 
 /// A length in a preset.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -100,20 +103,8 @@ pub struct Undercoat {
     pub shape: Shape,
 }
 
-/// Where the comb direction comes from when neither mesh nor map gives one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Comb {
-    /// Hair stands along the normal.
-    Upright,
-    /// Towards the ground.
-    Gravity,
-    /// From head to tail: along −z, the rear of a glTF model, and a little down.
-    Tailward,
-}
-
 /// How hair lies on the skin.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Groom {
     /// Direction of the comb.
@@ -122,6 +113,10 @@ pub struct Groom {
     pub lean_deg: f32,
     /// How far gravity pulls the lean towards the ground, in [0, 1].
     pub gravity: f32,
+    /// Points that hair turns around; where two reach, the nearer in terms of its reach decides.
+    pub whorls: Vec<Whorl>,
+    /// Brush strokes that comb what lies beside them; where two reach, the earlier decides, and whorls before all.
+    pub strokes: Vec<Stroke>,
 }
 
 /// Whose hair colour it is.
@@ -198,7 +193,7 @@ impl Default for Undercoat {
 
 impl Default for Groom {
     fn default() -> Self {
-        Self { comb: Comb::Tailward, lean_deg: 35.0, gravity: 0.1 }
+        Self { comb: Comb::Tailward, lean_deg: 35.0, gravity: 0.1, whorls: Vec::new(), strokes: Vec::new() }
     }
 }
 

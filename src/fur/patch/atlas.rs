@@ -7,7 +7,7 @@ use super::align::align;
 use super::face::Face;
 use super::measure::measure;
 use super::pack::pack;
-use super::xatlas::{Options, charts};
+use super::xatlas::{Charts, Options, charts};
 use crate::data::mesh::Mesh;
 use crate::data::patches::{Patches, Square};
 use crate::data::topology::Topology;
@@ -31,7 +31,7 @@ pub(super) fn parameterise(
     padding_texels: u32,
 ) -> Result<Patches> {
     let faces = Face::all(mesh);
-    let (mut patches, patch_of) = chart(mesh, &faces)?;
+    let (mut patches, patch_of) = chart(mesh, &faces, charts_of(mesh, &faces)?);
     undo_stretch(&faces, &patch_of, &patches.triangles, &mut patches.uv);
     align(mesh, &faces, direction, f64::from(tile_edge_m), &patches.triangles, &patch_of, &mut patches.uv);
     place(&mut patches, texels_per_tile as f32, padding_texels);
@@ -40,23 +40,40 @@ pub(super) fn parameterise(
     Ok(patches)
 }
 
-/// Coat vertices as xatlas cuts them, and each triangle's chart. Triangles that xatlas ignores for want of area become
-/// charts of their own.
-fn chart(mesh: &Mesh, faces: &[Face]) -> Result<(Patches, Vec<u32>)> {
-    // A mean triangle of about 1 keeps clear of xatlas' absolute limits; a power of two keeps every bit.
+/// Number of charts that xatlas cuts, and nothing else: what [`parameterise`](super::parameterise) is to be timed against.
+///
+/// # Errors
+/// Where xatlas gives the mesh up.
+pub fn xatlas_alone(mesh: &Mesh) -> Result<usize> {
+    let charts = charts_of(mesh, &Face::all(mesh))?;
+    Ok(charts.chart.iter().filter(|&&c| c != u32::MAX).max().map_or(0, |&c| c as usize + 1))
+}
+
+/// A mean triangle's edge, m, and the power of two that brings it to about 1.
+fn mean_edge(faces: &[Face]) -> (f64, f32) {
+    // That keeps clear of xatlas' absolute limits; a power of two keeps every bit.
     let area: f64 = faces.iter().map(|f| f.area_m2).sum();
     let mean_edge = (area / faces.len().max(1) as f64).sqrt();
-    let scale = if mean_edge > 0.0 { libm::exp2(-libm::log2(mean_edge).round()) } else { 1.0 } as f32;
+    (mean_edge, if mean_edge > 0.0 { libm::exp2(-libm::log2(mean_edge).round()) } else { 1.0 } as f32)
+}
+
+fn charts_of(mesh: &Mesh, faces: &[Face]) -> Result<Charts> {
+    let (mean_edge, scale) = mean_edge(faces);
     // Points that are one place get one position, or xatlas would cut the skin there.
     let positions: Vec<Vec3> = mesh.position_class.iter().map(|&c| mesh.positions_m[c as usize] * scale).collect();
     let max_area = (CHART_TRIANGLES * (mean_edge * f64::from(scale)).powi(2)) as f32;
     let options = Options { max_area, max_cost: MAX_COST, iterations: ITERATIONS };
-    let charts = charts(&positions, &mesh.triangles, options).ok_or_else(|| {
+    charts(&positions, &mesh.triangles, options).ok_or_else(|| {
         Error::input("xatlas could not cut the mesh into charts")
             .with_found(format!("{} triangles", mesh.triangles.len()))
             .with_hint("use --parameterisation lapped")
-    })?;
+    })
+}
 
+/// Coat vertices as xatlas cuts them, and each triangle's chart. Triangles that xatlas ignores for want of area become
+/// charts of their own.
+fn chart(mesh: &Mesh, faces: &[Face], charts: Charts) -> (Patches, Vec<u32>) {
+    let (_, scale) = mean_edge(faces);
     let mut patches = Patches::default();
     let mut patch_of = Vec::with_capacity(mesh.triangles.len());
     let mut made: BTreeMap<(u32, u32), u32> = BTreeMap::new();
@@ -91,7 +108,7 @@ fn chart(mesh: &Mesh, faces: &[Face]) -> Result<(Patches, Vec<u32>)> {
         }));
         patch_of.push(patch);
     }
-    Ok((patches, patch_of))
+    (patches, patch_of)
 }
 
 /// Charts come back stretched along u and v to whole texels. Flattening was conformal, so the ratio that makes the

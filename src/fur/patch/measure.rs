@@ -1,6 +1,6 @@
 //! What a parameterisation does to the skin: stretch, angle to the comb, texel density.
 
-use super::face::{Face, singular_values};
+use super::face::{self, Face};
 use crate::data::mesh::Mesh;
 use crate::data::patches::{Patches, Spread, Stats};
 use crate::data::topology::{NO_NEIGHBOUR, Topology};
@@ -8,6 +8,29 @@ use crate::math::{DVec2, Vec3};
 
 /// Singular values that pass for unstretched (the bounds that `Stats::within` counts).
 pub(super) const WITHIN: [f64; 2] = [0.7, 1.4];
+
+/// Measures any patches of a mesh: those of a file, say. `direction` is the comb, one per vertex, zero where there is none;
+/// the patches' triangles must be the mesh's, in its order.
+pub fn of(mesh: &Mesh, direction: &[Vec3], tile_edge_m: f32, patches: &Patches) -> Stats {
+    let topology = Topology::new(&mesh.triangles, |v| mesh.position_class[v as usize]);
+    measure(mesh, &topology, &Face::all(mesh), direction, f64::from(tile_edge_m), patches)
+}
+
+/// The singular values of the map from skin to texture over the tile scale, larger first, per triangle; `None` without
+/// area. The patches' triangles must be the mesh's, in its order.
+pub fn singular_values(mesh: &Mesh, tile_edge_m: f64, patches: &Patches) -> Vec<Option<[f64; 2]>> {
+    let of = |(face, triangle): (Face, &[u32; 3])| {
+        Some(face::singular_values(face.jacobian(triangle.map(|v| patches.uv[v as usize].as_dvec2() * tile_edge_m))?))
+    };
+    Face::all(mesh).into_iter().zip(&patches.triangles).map(of).collect()
+}
+
+/// The edges across which the texture does not go on, as coat vertices of their one side. The patches' triangles must be the
+/// mesh's, in its order.
+pub fn seam_edges(mesh: &Mesh, patches: &Patches) -> Vec<[u32; 2]> {
+    let topology = Topology::new(&mesh.triangles, |v| mesh.position_class[v as usize]);
+    seams(&topology, patches).map(|edge| edge.ends[0].map(|v| v as u32)).collect()
+}
 
 /// Measures `patches` of `mesh` against the comb `direction`, for tiles of `tile_edge_m`.
 pub(super) fn measure(
@@ -28,7 +51,7 @@ pub(super) fn measure(
     for (t, face) in faces.iter().enumerate() {
         let corners = patches.triangles[t].map(|v| patches.uv[v as usize].as_dvec2() * tile_edge_m);
         let Some(jacobian) = face.jacobian(corners) else { continue };
-        let [large, small] = singular_values(jacobian);
+        let [large, small] = face::singular_values(jacobian);
         stats.area_m2 += face.area_m2;
         values.extend([(large, face.area_m2), (small, face.area_m2)]);
         densities.push(((large * small).sqrt() / tile_edge_m, face.area_m2));
@@ -67,6 +90,25 @@ pub(super) struct Edge {
     pub ends: [[usize; 2]; 2],
 }
 
+/// Shifts nearer than this to a whole number of tiles cannot be seen, in tiles.
+const WHOLE: f32 = 1e-4;
+
+impl Edge {
+    /// Whether both sides are the same coat vertices, or have the same coordinates on vertices that the skin itself keeps
+    /// apart.
+    pub fn joined(&self, patches: &Patches) -> bool {
+        (0..2).map(|k| [self.ends[0][k], self.ends[1][k]]).all(|[a, b]| {
+            a == b || (patches.base_vertex[a] != patches.base_vertex[b] && patches.uv[a] == patches.uv[b])
+        })
+    }
+
+    /// Whether the texture goes on across it: the sides' coordinates differ by the same whole number of tiles at both ends.
+    pub fn continued(&self, patches: &Patches) -> bool {
+        let [a, b] = [0, 1].map(|k| patches.uv[self.ends[0][k]] - patches.uv[self.ends[1][k]]);
+        (a - b).abs().max_element() < WHOLE && (a - a.round()).abs().max_element() < WHOLE
+    }
+}
+
 /// All edges that have one clear neighbour, each once.
 pub(super) fn edges<'a>(topology: &'a Topology, patches: &'a Patches) -> impl Iterator<Item = Edge> + 'a {
     let vertex = |e: usize| patches.triangles[e / 3][e % 3] as usize;
@@ -82,9 +124,14 @@ pub(super) fn edges<'a>(topology: &'a Topology, patches: &'a Patches) -> impl It
     })
 }
 
+/// The edges whose sides have coordinates of their own: borders between patches, and cuts within them.
+pub(super) fn borders<'a>(topology: &'a Topology, patches: &'a Patches) -> impl Iterator<Item = Edge> + 'a {
+    edges(topology, patches).filter(|edge| !edge.joined(patches))
+}
+
 /// The edges across which the texture does not go on.
 pub(super) fn seams<'a>(topology: &'a Topology, patches: &'a Patches) -> impl Iterator<Item = Edge> + 'a {
-    edges(topology, patches).filter(|edge| (0..2).any(|k| patches.uv[edge.ends[0][k]] != patches.uv[edge.ends[1][k]]))
+    edges(topology, patches).filter(|edge| !edge.continued(patches))
 }
 
 /// Mean and percentiles of (value, weight) pairs; zeros for none.

@@ -18,8 +18,9 @@ use crate::data::patches::Patches;
 use crate::error::{Error, Result};
 use crate::math::Vec3;
 
-pub use atlas::fit as fit_atlas;
-pub use seams::{SeamStats, measure_seams};
+pub use atlas::{fit as fit_atlas, xatlas_alone};
+pub use measure::{of as measure, seam_edges, singular_values};
+pub use seams::{PIXEL, Place, compare_seams, measure_seams};
 pub use uv::usable as uv_usable;
 
 /// Where the texture coordinates come from.

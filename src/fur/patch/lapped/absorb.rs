@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 /// Patches of at most this share of the mean patch's area count as crumbs: the mean is far above the median.
 const CRUMB: f64 = 1.0;
 /// What a crumb's triangle must keep to in its new patch.
-const LIMITS: Limits = Limits { least: 0.45, most: 2.2, angle_rad: 1.3 };
+const LIMITS: Limits = Limits { least: 0.45, most: 2.2, angle_rad: 0.3 };
 
 /// Dissolves crumbs as far as their neighbours take them; emptied patches stay in the list without triangles.
 pub(super) fn absorb(surface: &Surface, patches: &mut [Patch], owner: &mut [u32]) {

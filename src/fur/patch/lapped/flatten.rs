@@ -12,7 +12,7 @@ use crate::math::sparse::Cholesky;
 
 /// How far a triangle's aim follows the rotation it took rather than its comb: 0 keeps to the comb at any stretch, 1
 /// forgets it.
-const YIELD: f64 = 0.8;
+const YIELD: f64 = 0.2;
 /// Weight of a plain spring along each edge, against cotangents: holds triangles without area, and slivers.
 const SPRING: f64 = 1e-4;
 

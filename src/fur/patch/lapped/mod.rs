@@ -10,6 +10,7 @@ mod grow;
 mod offset;
 mod patch;
 mod seed;
+mod stitch;
 
 use super::face::Face;
 use super::measure::measure;
@@ -59,6 +60,7 @@ pub(super) fn parameterise(mesh: &Mesh, direction: &[Vec3], tile_edge_m: f32, se
     absorb::absorb(&surface, &mut patches, &mut owner);
     let mut result = assemble(mesh, &patches, &owner, f64::from(tile_edge_m));
     offset::settle(mesh, &surface.topology, seed, &mut result);
+    stitch::stitch(&surface, f64::from(tile_edge_m), &mut result);
     result.stats = measure(mesh, &surface.topology, &faces, direction, f64::from(tile_edge_m), &result);
     result
 }

@@ -43,17 +43,22 @@ pub(super) fn settle(mesh: &Mesh, topology: &Topology, seed: u64, patches: &mut 
             u += length * DVec2::new(libm::cos(step.x), libm::sin(step.x));
             v += length * DVec2::new(libm::cos(step.y), libm::sin(step.y));
         }
-        let chance = combine(seed, p as u64);
-        let part = |sum: DVec2, axis: u64| {
-            if sum == DVec2::ZERO {
-                unit_f32(combine(chance, axis))
-            } else {
-                (libm::atan2(sum.y, sum.x) / std::f64::consts::TAU) as f32
-            }
+        let part = |sum: DVec2, chance: f32| {
+            if sum == DVec2::ZERO { chance } else { (libm::atan2(sum.y, sum.x) / std::f64::consts::TAU) as f32 }
         };
-        offsets[p] = Some(Vec2::new(part(u, 0), part(v, 1)));
+        let chance = by_chance(seed, p as u64);
+        offsets[p] = Some(Vec2::new(part(u, chance.x), part(v, chance.y)));
     }
-    for (uv, &p) in patches.uv.iter_mut().zip(&patches.patch) {
-        *uv += offsets[p as usize].unwrap_or_default();
-    }
+    let placed = |offset: &dyn Fn(u32) -> Vec2| {
+        patches.uv.iter().zip(&patches.patch).map(|(&uv, &p)| uv + offset(p)).collect::<Vec<_>>()
+    };
+    let settled = placed(&|p| offsets[p as usize].unwrap_or_default());
+    patches.chance_uv = placed(&|p| by_chance(seed, u64::from(p)));
+    patches.uv = settled;
+}
+
+/// A place in the tile for patch `p`.
+fn by_chance(seed: u64, p: u64) -> Vec2 {
+    let chance = combine(seed, p);
+    Vec2::new(unit_f32(combine(chance, 0)), unit_f32(combine(chance, 1)))
 }

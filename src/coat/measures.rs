@@ -1,0 +1,177 @@
+//! How well a coat lies on its skin, in numbers that reports and `inspect` print (`docs/steps/patch.md`).
+
+use super::seams::{BeforeAfter, look};
+use crate::asset::{Asset, Part};
+use crate::data::coat::{CoatPrimitive, Sampled, Tile};
+use crate::data::mesh::Mesh;
+use crate::data::patches::{Patches, Seams, Spread, Stats};
+use crate::error::Result;
+use crate::fur::patch;
+use crate::math::Vec3;
+use serde::Serialize;
+use std::collections::HashMap;
+
+/// A parameterisation in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Measures {
+    /// Patches, charts or islands.
+    pub patches: usize,
+    /// Skin triangles that wear the coat, each once.
+    pub faces: usize,
+    /// Skin triangles that wear it more than once: 0 in a sound coat.
+    pub faces_doubled: usize,
+    /// Skin triangles without coat.
+    pub faces_bare: usize,
+    /// Skin area with coat, cm².
+    pub area_cm2: f64,
+    /// Singular values of the map from skin to texture over the tile scale: 1 is neither stretched nor squeezed.
+    pub singular_values: Range,
+    /// Share of the area whose singular values both lie in [0.7, 1.4].
+    pub share_within: f64,
+    /// Mean angle between +u and the hair's direction along the skin, degrees; 0 where hair has none.
+    pub field_angle_deg: f64,
+    /// Texels per mm of skin.
+    pub texels_per_mm: Range,
+    /// Length of seams (borders between patches and cuts within them), cm.
+    pub seams_cm: f64,
+    /// Area that the texture shows mirrored, cm².
+    pub mirrored_cm2: f64,
+    /// Area whose texture another place uses too, cm²; measured for an asset's own coordinates only.
+    pub overlapped_cm2: f64,
+    /// How much seams show on the tile that is worn; nothing where hair was sampled on the skin itself, as an atlas' is.
+    pub seams: Option<SeamRows>,
+}
+
+/// Mean and percentiles over the skin's area.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Range {
+    /// Mean.
+    pub mean: f64,
+    /// 5th percentile.
+    pub p5: f64,
+    /// 95th percentile.
+    pub p95: f64,
+}
+
+/// Seams as they are worn, and before anything was done against them where that is known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SeamRows {
+    /// As worn.
+    pub worn: SeamRow,
+    /// With every patch where chance put it in its tile; a file does not say.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub by_chance: Option<SeamRow>,
+}
+
+/// See [`Seams`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SeamRow {
+    /// Edges that are seams.
+    pub edges: usize,
+    /// Mean squared difference across seams over that across fake borders.
+    pub difference_over_fake: f64,
+    /// Variance along seams over that inside patches.
+    pub variance_over_interior: f64,
+}
+
+impl From<Seams> for SeamRow {
+    fn from(Seams { edges, difference, variance, .. }: Seams) -> Self {
+        Self { edges, difference_over_fake: difference, variance_over_interior: variance }
+    }
+}
+
+impl From<BeforeAfter> for SeamRows {
+    fn from(seams: BeforeAfter) -> Self {
+        Self { worn: seams.worn.into(), by_chance: Some(seams.by_chance.into()) }
+    }
+}
+
+impl Measures {
+    /// The numbers of a parameterisation that covers a skin, for tiles of `texels` along an edge.
+    pub fn new(stats: &Stats, texels: f64, seams: Option<SeamRows>) -> Self {
+        let scaled = |s: &Spread, by: f64| Range { mean: s.mean * by, p5: s.p5 * by, p95: s.p95 * by };
+        Self {
+            patches: stats.patches,
+            faces: stats.faces,
+            faces_doubled: 0,
+            faces_bare: 0,
+            area_cm2: stats.area_m2 * 1e4,
+            singular_values: scaled(&stats.singular_values, 1.0),
+            share_within: stats.within,
+            field_angle_deg: stats.field_angle_rad.to_degrees(),
+            texels_per_mm: scaled(&stats.tiles_per_m, texels * 1e-3),
+            seams_cm: stats.seams_m * 1e2,
+            mirrored_cm2: stats.mirrored_m2 * 1e4,
+            overlapped_cm2: stats.overlapped_m2 * 1e4,
+            seams,
+        }
+    }
+
+    /// Measures what a file's primitive wears. The hair's direction is that of its offsets along the skin.
+    ///
+    /// # Errors
+    /// As [`Part::mesh`].
+    pub fn worn(part: &Part, worn: &CoatPrimitive, tile: &Tile, metres_per_unit: f64) -> Result<Self> {
+        let skin = part.mesh(metres_per_unit)?;
+        let mut times: HashMap<[u32; 3], usize> = skin.triangles.iter().map(|&t| (sorted(t), 0)).collect();
+        let triangles: Vec<[u32; 3]> = worn.triangles.iter().map(|t| t.map(|v| worn.base_vertex[v as usize])).collect();
+        for &triangle in &triangles {
+            *times.entry(sorted(triangle)).or_default() += 1;
+        }
+        let offset = offsets(part, worn, tile, metres_per_unit);
+        let normals = skin.smooth_normals();
+        let direction: Vec<Vec3> =
+            offset.iter().zip(&normals).map(|(o, &n)| o.reject_from_normalized(n).normalize_or_zero()).collect();
+        let mesh = Mesh { triangles, ..skin };
+        let patches = Patches {
+            base_vertex: worn.base_vertex.clone(),
+            uv: worn.uv.clone(),
+            patch: worn.patch.clone(),
+            triangles: worn.triangles.clone(),
+            ..Patches::default()
+        };
+        let mut stats = patch::measure(&mesh, &direction, tile.edge_m, &patches);
+        let mut used = worn.patch.clone();
+        used.sort_unstable();
+        used.dedup();
+        stats.patches = used.len();
+        let tiled = tile.sampled == Sampled::Square;
+        let seams = tiled.then(|| SeamRows { worn: look(&mesh, &offset, &patches, tile).into(), by_chance: None });
+        let count = |wanted: fn(usize) -> bool| times.values().filter(|&&n| wanted(n)).count();
+        Ok(Self {
+            faces: count(|n| n == 1),
+            faces_doubled: count(|n| n > 1),
+            faces_bare: count(|n| n == 0),
+            ..Self::new(&stats, f64::from(tile.shells.size), seams)
+        })
+    }
+
+    /// [`Self::worn`] for every primitive of a coat that a file wears.
+    ///
+    /// # Errors
+    /// As [`Part::mesh`].
+    pub fn all(asset: &Asset, coat: &crate::data::coat::Coat) -> Result<Vec<Self>> {
+        let part = |worn: &CoatPrimitive| {
+            asset.parts.iter().find(|part| (part.mesh, part.primitive) == (worn.mesh, worn.primitive))
+        };
+        let measured = |worn: &CoatPrimitive| {
+            part(worn).map(|part| Self::worn(part, worn, &coat.tiles[worn.tile], coat.metres_per_unit))
+        };
+        coat.primitives.iter().filter_map(measured).collect()
+    }
+}
+
+fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
+    triangle.sort_unstable();
+    triangle
+}
+
+/// Offset of each skin vertex over the stack's height, world axes; zero where none is worn.
+fn offsets(part: &Part, worn: &CoatPrimitive, tile: &Tile, metres_per_unit: f64) -> Vec<Vec3> {
+    let mut offset = vec![Vec3::ZERO; part.vertices()];
+    for (&base, local) in worn.base_vertex.iter().zip(&worn.offset) {
+        let world_m = part.world_from_local(base as usize) * local.as_dvec3() * metres_per_unit;
+        offset[base as usize] = (world_m / f64::from(tile.height_m)).as_vec3();
+    }
+    offset
+}

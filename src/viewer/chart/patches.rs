@@ -1,0 +1,75 @@
+//! A colour for each patch.
+
+use super::Worn;
+use super::colours::DISTINCT;
+use super::shapes::Shapes;
+use crate::asset::material::Wrap;
+use crate::data::coat::Coat;
+use crate::data::image::Image8;
+use crate::error::Result;
+use crate::fur::patch;
+use crate::math::Vec3;
+use crate::runtime::Skin;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// Width of a seam's line over the skin's diagonal.
+const LINE: f32 = 0.002;
+
+/// See [`super::draw`].
+pub(super) fn draw<'a>(all: &[Worn<'_>], coat: &Coat, tile: &'a Image8) -> Result<(Vec<Skin<'a>>, Vec<String>)> {
+    let mut skins = Vec::with_capacity(all.len());
+    let (mut patches, mut seams_m) = (0, 0.0);
+    let mut lines = Shapes::default();
+    for worn in all {
+        let colours = colours(worn);
+        patches += colours.len();
+        let of_triangle = |t: usize| colours[&worn.worn.patch[worn.worn.triangles[t][0] as usize]];
+        let uv = worn.worn.triangles.iter().flatten().map(|&v| worn.worn.uv[v as usize]).collect();
+        skins.push(Skin { uv, texture: Some((tile, [Wrap::Repeat; 2])), ..worn.facets(of_triangle) });
+        let (mesh, laid) = worn.laid(coat)?;
+        for ends in patch::seam_edges(&mesh, &laid) {
+            let base = ends.map(|v| worn.worn.base_vertex[v as usize] as usize);
+            let [a, b] = base.map(|v| worn.posed.positions_m[v]);
+            let normal = base.iter().map(|&v| worn.posed.normals[v]).sum::<Vec3>().normalize_or(Vec3::Y);
+            lines.line([a, b], normal, LINE * mesh.diagonal_m());
+            seams_m += a.distance(b);
+        }
+    }
+    skins.push(lines.0);
+    let legend = format!(
+        "{patches} patches, neighbours in different colours; thick lines are the {:.1} cm of seams, where the texture does not \
+         go on; thin ones outline the tile, and the hair's direction runs from its dark side to its bright one",
+        1e2 * seams_m
+    );
+    Ok((skins, vec![legend]))
+}
+
+/// A colour per patch: the one least used so far that no neighbour has.
+fn colours(worn: &Worn<'_>) -> BTreeMap<u32, Vec3> {
+    let w = worn.worn;
+    let class = |v: u32| worn.part.stored.position_class[w.base_vertex[v as usize] as usize];
+    let mut beside: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
+    let mut at_edge: HashMap<(u32, u32), u32> = HashMap::new();
+    for triangle in &w.triangles {
+        let patch = w.patch[triangle[0] as usize];
+        beside.entry(patch).or_default();
+        for k in 0..3 {
+            let (a, b) = (class(triangle[k]), class(triangle[(k + 1) % 3]));
+            let other = *at_edge.entry((a.min(b), a.max(b))).or_insert(patch);
+            if other != patch {
+                beside.entry(patch).or_default().insert(other);
+                beside.entry(other).or_default().insert(patch);
+            }
+        }
+    }
+    let mut used = [0; DISTINCT.len()];
+    let mut chosen: BTreeMap<u32, usize> = BTreeMap::new();
+    for (&patch, neighbours) in &beside {
+        let taken: BTreeSet<usize> = neighbours.iter().filter_map(|n| chosen.get(n).copied()).collect();
+        let free = (0..DISTINCT.len()).filter(|c| !taken.contains(c)).min_by_key(|&c| used[c]);
+        let colour = free.unwrap_or(patch as usize % DISTINCT.len());
+        used[colour] += 1;
+        chosen.insert(patch, colour);
+    }
+    chosen.into_iter().map(|(patch, colour)| (patch, DISTINCT[colour])).collect()
+}

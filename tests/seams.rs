@@ -1,0 +1,104 @@
+//! Seams between patches: measured on tiles, and made few.
+
+use crate::common::shared;
+use crate::meshes;
+use furrier::coat::tile::{TileHair, TileRecipe};
+use furrier::fur::field::{FieldSource, directions};
+use furrier::fur::groom::fibre::Fibre;
+use furrier::fur::patch::{Parameterisation, Place, measure, measure_seams, parameterise};
+use furrier::math::{Vec2, Vec3};
+
+const LAPPED: Parameterisation = Parameterisation::Lapped { seed: 1 };
+
+/// A bunny wears the rabbit's tile as baked: its seams show no more than chance, and are as sharp as the rest.
+#[test]
+fn seams_of_a_real_coat_show_no_more_than_chance() {
+    let Some(shared) = shared() else { return };
+    let asset = furrier::asset::load(&shared.join("real/bunny_5k.glb").to_string_lossy()).expect("the bunny");
+    let preset = furrier::preset::Preset::load("rabbit").expect("built in");
+    let mesh = asset.parts[0].mesh(f64::from(preset.size_m) / asset.diagonal_units).expect("a sound part");
+    let guard = Fibre::guard(&preset.guard, &preset.colour, preset.size_m);
+    let undercoat = Fibre::undercoat(&preset.undercoat, &preset.colour, preset.size_m);
+    let hair = TileHair::grow(&guard, &undercoat, preset.shells.tile_mm * 1e-3, 1);
+    let shells = furrier::coat::shells::ShellParameters { texture_size: 64, layers: 12, ..preset.shells };
+    let recipe = TileRecipe {
+        preset: preset.name.clone(),
+        shells,
+        fins: preset.fins,
+        skin: Vec3::from(preset.colour.skin),
+        lean_deg: preset.groom.lean_deg,
+    };
+    let tile = furrier::coat::tile::bake(&hair, &recipe);
+    let comb = directions(&mesh, &[FieldSource::Tailward { sag: 0.3 }]).expect("a comb").direction;
+    let patches = parameterise(&mesh, &comb, tile.edge_m, LAPPED).expect("patches");
+    let (sin, cos) = preset.groom.lean_deg.to_radians().sin_cos();
+    let offset: Vec<Vec3> = mesh.smooth_normals().iter().zip(&comb).map(|(&n, &c)| n * cos + c * sin).collect();
+    let seams = furrier::coat::seams::before_after(&mesh, &offset, &patches, &tile);
+    println!("by chance {:?}, worn {:?}", seams.by_chance, seams.worn);
+    assert!(seams.worn.difference <= 1.1 && seams.worn.variance >= 0.9, "{seams:?}");
+}
+
+#[test]
+fn stitching_takes_most_seams_away() {
+    for (mesh, tile_edge_m) in [(meshes::sphere(24, 0.1), 0.02), (meshes::torus(24, [1.0, 0.4]), 0.2)] {
+        let comb = directions(&mesh, &[FieldSource::Tailward { sag: 0.3 }]).expect("a comb").direction;
+        let stitched = parameterise(&mesh, &comb, tile_edge_m, LAPPED).expect("patches");
+        let loose = measure(&mesh, &comb, tile_edge_m, &stitched.by_chance());
+        assert!(stitched.stats.seams_m < 0.75 * loose.seams_m, "{} of {} m", stitched.stats.seams_m, loose.seams_m);
+        assert!(stitched.stats.within > 0.95, "{:?}", stitched.stats);
+    }
+}
+
+/// A random tile of 128² texels, smoothed over a few: hair-like in that neighbours resemble each other.
+fn tile() -> impl Fn(Vec2) -> [f32; 3] {
+    use furrier::math::hash::{combine, unit_f32};
+    let size = 128_i64;
+    let raw = move |x: i64, y: i64, v: u64| {
+        unit_f32(combine(combine(v, x.rem_euclid(size) as u64), y.rem_euclid(size) as u64))
+    };
+    let texels: Vec<[f32; 3]> = (0..size * size)
+        .map(|i| {
+            let (x, y) = (i % size, i / size);
+            [0, 1, 2]
+                .map(|v| (-3..=3).flat_map(|dx| (-1..=1).map(move |dy| raw(x + dx, y + dy, v))).sum::<f32>() / 21.0)
+        })
+        .collect();
+    move |uv: Vec2| {
+        let at = (uv * size as f32).floor();
+        texels[(at.y as i64).rem_euclid(size) as usize * size as usize + (at.x as i64).rem_euclid(size) as usize]
+    }
+}
+
+#[test]
+fn seams_show_no_more_than_chance_and_planted_ones_are_seen() {
+    let mesh = meshes::sphere(24, 0.1);
+    let comb = meshes::tangent(&mesh, |_| Vec3::NEG_Y);
+    let patches = parameterise(&mesh, &comb, 0.02, LAPPED).expect("patches");
+    let tile = tile();
+    let seen = |place: &Place| place.uv.iter().map(|&uv| tile(uv)).collect::<Vec<_>>();
+    let plain = measure_seams(&mesh, &patches, 0.02, 128, seen);
+    assert!(plain.edges > 50 && plain.difference < 1.1 && plain.variance > 0.9, "{plain:?}");
+
+    let topology = furrier::data::topology::Topology::new(&mesh.triangles, |v| mesh.position_class[v as usize]);
+    let mut seams = std::collections::HashSet::new();
+    for e in 0..topology.across.len() {
+        let across = topology.across[e] as usize;
+        let corner = |e: usize| patches.triangles[e / 3][e % 3];
+        let next = |e: usize| e - e % 3 + (e + 1) % 3;
+        if patches.uv[corner(e) as usize] != patches.uv[corner(next(across)) as usize] {
+            seams.insert([e, next(e)].map(|e| patches.base_vertex[corner(e) as usize]));
+        }
+    }
+    let at_seam = |place: &Place| seams.contains(&place.edge.0) || seams.contains(&[place.edge.0[1], place.edge.0[0]]);
+    // Sides of seams differ in brightness, as seen by which way the texture runs there: the seams show.
+    let bright = |place: &Place| {
+        let more = if at_seam(place) { 0.3 * (place.uv[0].x * 7.0).sin() } else { 0.0 };
+        seen(place).into_iter().map(|s| s.map(|x| x + more)).collect::<Vec<_>>()
+    };
+    let shown = measure_seams(&mesh, &patches, 0.02, 128, bright);
+    assert!(shown.difference > 1.5, "{shown:?}");
+    // Blurred along seams: no difference, but no hair either.
+    let blur = |place: &Place| if at_seam(place) { vec![[0.5; 3]; place.uv.len()] } else { seen(place) };
+    let blurred = measure_seams(&mesh, &patches, 0.02, 128, blur);
+    assert!(blurred.difference < 1.1 && blurred.variance < 0.9, "{blurred:?}");
+}
