@@ -24,6 +24,16 @@ pub struct Maps {
     pub clump: Option<PathBuf>,
 }
 
+/// Another preset on a part of the skin, with a smooth passage into it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Region {
+    /// Built-in preset or file (relative to this one), whose hair grows there.
+    pub preset: String,
+    /// Grey image over the first UV set: how much of that preset is there. Without it, the vertex attribute `_FUR_REGION`.
+    pub map: Option<PathBuf>,
+}
+
 /// A coat's recipe: one table per step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -48,6 +58,9 @@ pub struct Preset {
     pub shells: ShellParameters,
     /// Fin texture.
     pub fins: FinParameters,
+    /// `[[regions]]`, at most 8, later ones over earlier ones: `preset`, the name or file (relative to this one) of what grows there,
+    /// and `map`, a grey image over the first UV set that says how much of it; without a map the vertex attribute `_FUR_REGION`.
+    pub regions: Vec<Region>,
 }
 
 /// Presets are written by hand: anything larger than this many bytes is another kind of file.
@@ -119,6 +132,12 @@ impl Preset {
         let maps = &mut preset.maps;
         for map in [&mut maps.density, &mut maps.length, &mut maps.comb, &mut maps.colour, &mut maps.clump] {
             *map = map.take().map(|relative| folder.join(relative));
+        }
+        for region in &mut preset.regions {
+            region.map = region.map.take().map(|relative| folder.join(relative));
+            if Self::source(&region.preset).is_none() {
+                region.preset = folder.join(&region.preset).to_string_lossy().into_owned();
+            }
         }
         Ok(preset)
     }
@@ -219,6 +238,12 @@ impl Preset {
         }
         for (i, stroke) in self.groom.strokes.iter().enumerate() {
             stroke.check(&format!("groom.strokes[{i}]"))?;
+        }
+        if self.regions.len() > 8 {
+            return Err(Error::usage("a preset has too many regions")
+                .with_field("regions")
+                .with_found(self.regions.len())
+                .with_expected("at most 8"));
         }
         self.shells.check()?;
         self.fins.check()?;

@@ -258,10 +258,10 @@ impl Furred {
             positions_m: self.positions_m.clone(),
             normals: self.normals.clone(),
             offsets_m: self.offsets_m.clone(),
-            uv: &self.uv,
-            tint: &self.tint,
+            uv: self.uv.as_slice().into(),
+            tint: self.tint.as_slice().into(),
             triangles: &self.triangles,
-            fins: &self.fins,
+            fins: self.fins.as_slice().into(),
         };
         Scene { skins: vec![skin], furs: vec![fur], tiles }
     }

@@ -1,7 +1,7 @@
 //! Coats made up for tests of files: every field has its own numbers, so that a mix-up shows.
 
 use furrier::asset::Asset;
-use furrier::data::coat::{Coat, CoatPrimitive, FinEdge, FinTexture, Sampled, ShellStack, Tile};
+use furrier::data::coat::{Blend, Coat, CoatPrimitive, FinEdge, FinTexture, Sampled, ShellStack, Tile};
 use furrier::data::image::Image8;
 use furrier::math::hash::Stream;
 use furrier::math::{Vec2, Vec4};
@@ -53,7 +53,7 @@ pub fn tile(seed: u64) -> Tile {
 
 /// A coat over every part: hair along the normals, a twentieth of the asset long.
 pub fn coat_for(asset: &Asset) -> Coat {
-    let mut coat = Coat { metres_per_unit: 0.5, tiles: vec![tile(1), tile(2)], primitives: Vec::new() };
+    let mut coat = Coat { metres_per_unit: 0.5, tiles: vec![tile(1), tile(2), tile(3)], primitives: Vec::new() };
     let length = 0.05 * asset.diagonal_units as f32;
     for (index, part) in asset.parts.iter().enumerate() {
         let mesh = part.mesh(1.0).expect("a part is sound");
@@ -72,7 +72,17 @@ pub fn coat_for(asset: &Asset) -> Coat {
             tint: (0..n).map(|v| Vec4::new(1.0, 0.5, (v % 7) as f32 / 7.0, 1.0)).collect(),
             triangles: mesh.triangles.clone(),
             fins: mesh.triangles.iter().map(fin).collect(),
+            blend: None,
         });
+        // The first part is worn in two pieces, one of them passing into a third tile.
+        if index == 0 && mesh.triangles.len() > 1 {
+            let whole = coat.primitives.remove(0);
+            let half = whole.triangles.len() / 2;
+            let mut passing = whole.part(|t| t >= half);
+            let weight = (0..passing.uv.len()).map(|v| (v % 5) as f32 / 4.0).collect();
+            passing.blend = Some(Blend { tile: 2, weight });
+            coat.primitives.extend([whole.part(|t| t < half), passing]);
+        }
     }
     coat
 }

@@ -32,6 +32,7 @@ mod pelts;
 mod posed;
 mod poses;
 mod presets;
+mod regions;
 mod render_cli;
 mod ribbons;
 mod runtime;

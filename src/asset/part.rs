@@ -118,6 +118,7 @@ impl Part {
             uv_sets: stored.uv_sets.clone(),
             colour: stored.colour.clone(),
             fur_length: stored.fur_length.clone(),
+            fur_region: stored.fur_region.clone(),
             fur_direction: stored
                 .fur_direction
                 .as_ref()

@@ -32,6 +32,8 @@ pub struct Primitive {
     pub colour: Option<Vec<Vec4>>,
     /// `_FUR_LENGTH`.
     pub fur_length: Option<Vec<f32>>,
+    /// `_FUR_REGION`.
+    pub fur_region: Option<Vec<f32>>,
     /// `_FUR_DIRECTION`.
     pub fur_direction: Option<Vec<Vec3>>,
     /// Joints and weights of skinned primitives.
@@ -102,6 +104,9 @@ impl Primitive {
         }
         if let Some(at) = attributes.get("_FUR_LENGTH") {
             self.fur_length = Some(read(&at, 1)?.into_iter().map(|length| length.max(0.0)).collect());
+        }
+        if let Some(at) = attributes.get("_FUR_REGION") {
+            self.fur_region = Some(read(&at, 1)?.into_iter().map(|share| share.clamp(0.0, 1.0)).collect());
         }
         if let Some(at) = attributes.get("_FUR_DIRECTION") {
             self.fur_direction = Some(read(&at, 3)?.chunks_exact(3).map(Vec3::from_slice).collect());

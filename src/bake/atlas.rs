@@ -1,9 +1,9 @@
 //! An atlas: hair grown on the parts themselves, charts of all of them in one square.
 
-use super::{Dressed, Laid, Steps, Task, skin};
+use super::{Dressed, Laid, Steps, Task, recipe, skin};
 use crate::coat::atlas::{self, judge};
 use crate::coat::measures::Measures;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fur::patch::{Parameterisation, fit_atlas, parameterise};
 use std::time::Instant;
 
@@ -17,7 +17,14 @@ const PLACES: usize = 8;
 
 /// Bakes the atlas of the task's parts and puts it on them.
 pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>) -> Result<Dressed> {
-    let (fibres, recipe) = (task.fibres(), task.recipe());
+    if let Some(region) = task.preset.regions.first() {
+        return Err(Error::usage("an atlas cannot have regions yet")
+            .with_field("regions")
+            .with_found(&region.preset)
+            .with_expected("a preset without regions")
+            .with_hint("use --parameterisation lapped or uv"));
+    }
+    let (fibres, recipe) = (task.fibres(task.preset), recipe(task.preset));
     let texels = texels.unwrap_or_else(|| (TEXELS.0 * recipe.shells.texture_size).min(TEXELS.1));
     let tile_m = recipe.shells.tile_mm * 1e-3;
     let (mut groomed, mut patches, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
@@ -56,7 +63,7 @@ pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>)
                 measures: Measures::new(&patches[i].stats, texels_per_tile, None),
                 ms: times_ms[i],
             };
-            (primitive, laid)
+            (vec![primitive], laid)
         })
         .collect();
     // The largest skin speaks for all: each place means growing its hair again, every single one.
@@ -70,11 +77,11 @@ pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>)
             judge::Worn { mesh, fields, patches: &patches[i], tile: &tile, hair: [&fibres[0], &fibres[1]], seed };
         steps.run("judge", || judge::surface_tables(&worn, &[at]))
     });
-    let accuracy = judged.and_then(|mut groups| groups.pop());
+    let accuracy = judged.into_iter().flatten().collect();
     let note = format!(
         "the atlas of {} has {texels}\u{b2} texels of {:.2} mm; --texture-size N changes that",
         task.preset.name,
         square.edge_m / texels as f32 * 1e3
     );
-    Ok(Dressed { tile, worn, accuracy, notes: vec![note], warnings })
+    Ok(Dressed { tiles: vec![tile], worn, accuracy, notes: vec![note], warnings })
 }

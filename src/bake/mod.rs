@@ -3,6 +3,7 @@
 mod atlas;
 mod comb;
 pub mod picture;
+mod regions;
 mod skin;
 pub mod units;
 
@@ -13,7 +14,7 @@ use crate::coat::measures::Measures;
 use crate::coat::seams::before_after;
 use crate::coat::tile::{TileHair, TileRecipe, bake as bake_tile, leaning};
 use crate::coat::wear::wear;
-use crate::data::coat::{Coat, CoatPrimitive, Tile};
+use crate::data::coat::{Blend, Coat, CoatPrimitive, Tile};
 use crate::data::patches::Patches;
 use crate::error::{Error, Result};
 use crate::fur::field::Singularity;
@@ -88,7 +89,7 @@ pub struct Baked {
     pub materials: Vec<String>,
     /// Bounding diagonal that lengths refer to, m.
     pub diagonal_m: f64,
-    /// Comb and parameterisation of each coat primitive.
+    /// Comb and parameterisation of each furred part.
     pub laid: Vec<Laid>,
     /// Coverage of each tile against its strands, when asked for.
     pub accuracy: Vec<Vec<Row>>,
@@ -170,15 +171,21 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
             None => tiles.push((preset, vec![index])),
         }
     }
-    let mut worn: Vec<(usize, CoatPrimitive, Laid)> = Vec::new();
-    for (tile, (preset, parts)) in tiles.iter().enumerate() {
+    let mut worn: Vec<(usize, Vec<CoatPrimitive>, Laid)> = Vec::new();
+    for (preset, parts) in &tiles {
         let task = Task { asset: &asset, preset, parts, request, scale: &scale };
         let dressed = match request.method {
             Method::Atlas { texels } => atlas::dress(&task, texels, &mut steps)?,
             Method::Lapped => dress(&task, |seed| Parameterisation::Lapped { seed }, &mut steps)?,
             Method::Uv(set) => dress(&task, |_| Parameterisation::Uv { set }, &mut steps)?,
         };
-        warnings.extend(units::length_warning(dressed.tile.height_m, scale.diagonal_m));
+        let first = coat.tiles.len();
+        let numbered = |primitive: CoatPrimitive| CoatPrimitive {
+            tile: first + primitive.tile,
+            blend: primitive.blend.map(|blend| Blend { tile: first + blend.tile, ..blend }),
+            ..primitive
+        };
+        warnings.extend(dressed.tiles.iter().filter_map(|t| units::length_warning(t.height_m, scale.diagonal_m)));
         notes.extend(dressed.notes);
         for warning in dressed.warnings {
             // What is said of the whole asset is said once.
@@ -187,17 +194,17 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
             }
         }
         baked.accuracy.extend(dressed.accuracy);
-        coat.tiles.push(dressed.tile);
+        coat.tiles.extend(dressed.tiles);
         worn.extend(
             parts
                 .iter()
                 .zip(dressed.worn)
-                .map(|(&index, (primitive, laid))| (index, CoatPrimitive { tile, ..primitive }, laid)),
+                .map(|(&index, (primitives, laid))| (index, primitives.into_iter().map(numbered).collect(), laid)),
         );
     }
     worn.sort_by_key(|(index, ..)| *index);
-    for (_, primitive, laid) in worn {
-        coat.primitives.push(primitive);
+    for (_, primitives, laid) in worn {
+        coat.primitives.extend(primitives);
         baked.laid.push(laid);
     }
     notes.extend(steps.run("write", || write_coat(&asset, &coat, request.fallback, &request.out))?);
@@ -217,34 +224,26 @@ struct Task<'a> {
     scale: &'a Scale,
 }
 
-/// A tile and what wears it.
+/// Tiles and what wears them.
 struct Dressed {
-    tile: Tile,
-    /// One per part of the task.
-    worn: Vec<(CoatPrimitive, Laid)>,
-    accuracy: Option<Vec<Row>>,
+    /// The preset's own, then those of its regions.
+    tiles: Vec<Tile>,
+    /// Per part of the task; tiles are numbered as above.
+    worn: Vec<(Vec<CoatPrimitive>, Laid)>,
+    /// Per tile, where asked for.
+    accuracy: Vec<Vec<Row>>,
     notes: Vec<String>,
     warnings: Vec<String>,
 }
 
 impl Task<'_> {
-    /// Guard hair and undercoat.
-    fn fibres(&self) -> [Fibre; 2] {
-        let (preset, diagonal_m) = (self.preset, self.scale.diagonal_m as f32);
+    /// Guard hair and undercoat of a preset.
+    fn fibres(&self, preset: &Preset) -> [Fibre; 2] {
+        let diagonal_m = self.scale.diagonal_m as f32;
         [
             Fibre::guard(&preset.guard, &preset.colour, diagonal_m),
             Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m),
         ]
-    }
-
-    fn recipe(&self) -> TileRecipe {
-        TileRecipe {
-            preset: self.preset.name.clone(),
-            shells: self.preset.shells,
-            fins: self.preset.fins,
-            skin: Vec3::from(self.preset.colour.skin),
-            lean_deg: self.preset.groom.lean_deg,
-        }
     }
 
     /// Decides what is random on a part.
@@ -261,9 +260,19 @@ impl Task<'_> {
     }
 }
 
-/// Grows and bakes a tile, and puts it on each part over patches of its own.
-fn dress(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: &mut Steps<'_>) -> Result<Dressed> {
-    let ([guard, undercoat], recipe, request) = (task.fibres(), task.recipe(), task.request);
+fn recipe(preset: &Preset) -> TileRecipe {
+    TileRecipe {
+        preset: preset.name.clone(),
+        shells: preset.shells,
+        fins: preset.fins,
+        skin: Vec3::from(preset.colour.skin),
+        lean_deg: preset.groom.lean_deg,
+    }
+}
+
+/// Grows and bakes the tile of a preset, and measures it where that is asked for.
+fn tile_of(task: &Task<'_>, preset: &Preset, steps: &mut Steps<'_>) -> (Tile, Option<Vec<Row>>) {
+    let ([guard, undercoat], recipe, request) = (task.fibres(preset), recipe(preset), task.request);
     let edge_m = recipe.shells.tile_mm * 1e-3;
     let hair = steps.run("grow", || TileHair::grow(&guard, &undercoat, edge_m, request.seed));
     let tile = steps.run("tile", || bake_tile(&hair, &recipe));
@@ -272,31 +281,46 @@ fn dress(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: &mut 
         coverage_table(&hair, &tile, leaning(recipe.lean_deg), effort)
     };
     let accuracy = request.judge.then(|| steps.run("judge", judge));
-    let mut dressed = Dressed { tile, worn: Vec::new(), accuracy, notes: Vec::new(), warnings: Vec::new() };
+    (tile, accuracy)
+}
+
+/// Bakes the tiles of a preset and its regions, and puts them on each part over patches of its own.
+fn dress(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: &mut Steps<'_>) -> Result<Dressed> {
+    let (others, request) = (regions::presets(task.preset)?, task.request);
+    let (mut tiles, mut accuracy) = (Vec::new(), Vec::new());
+    for preset in std::iter::once(task.preset).chain(&others) {
+        let (tile, rows) = tile_of(task, preset, steps);
+        tiles.push(tile);
+        accuracy.extend(rows);
+    }
+    let (mut worn, mut warnings) = (Vec::new(), Vec::new());
     for &part in task.parts {
         let groomed = steps.run("groom", || {
             skin::groom(task.asset, &task.asset.parts[part], task.preset, task.scale.metres_per_unit)
         })?;
-        let direction = &groomed.fields.direction;
+        let (direction, edge_m) = (&groomed.fields.direction, tiles[0].edge_m);
         let start = Instant::now();
         let patches =
             steps.run("patches", || parameterise(&groomed.mesh, direction, edge_m, method(task.seed(part))))?;
         let ms = start.elapsed().as_secs_f64() * 1e3;
-        dressed.warnings.extend(groomed.notes.iter().chain(&patches.stats.warnings).cloned());
-        let tile = &dressed.tile;
+        warnings.extend(groomed.notes.iter().chain(&patches.stats.warnings).cloned());
         let seams = request.judge.then(|| {
-            steps.run("judge seams", || before_after(&groomed.mesh, &groomed.offsets(), &patches, tile).into())
+            steps.run("judge seams", || before_after(&groomed.mesh, &groomed.offsets(), &patches, &tiles[0]).into())
         });
-        let worn = steps.run("wear", || task.wear(part, &groomed, &patches, tile));
+        let primitives = if others.is_empty() {
+            vec![steps.run("wear", || task.wear(part, &groomed, &patches, &tiles[0]))]
+        } else {
+            regions::wear_all(task, part, &groomed, &patches, (&others, &tiles), steps)?
+        };
         let laid = Laid {
             material: task.asset.parts[part].material_name.clone(),
             singularities: groomed.singularities,
-            measures: Measures::new(&patches.stats, f64::from(tile.shells.size), seams),
+            measures: Measures::new(&patches.stats, f64::from(tiles[0].shells.size), seams),
             ms,
         };
-        dressed.worn.push((worn, laid));
+        worn.push((primitives, laid));
     }
-    Ok(dressed)
+    Ok(Dressed { tiles, worn, accuracy, notes: Vec::new(), warnings })
 }
 
 fn preset_of<'a>(request: &'a Request, part: &Part) -> &'a Preset {

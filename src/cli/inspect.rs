@@ -59,9 +59,10 @@ fn print(inspection: &Inspection, out: &mut dyn Write) -> io::Result<()> {
     let coat = &inspection.coat;
     writeln!(out, "{}", inspection.file.display())?;
     for (i, (worn, material)) in coat.primitives.iter().zip(&inspection.materials).enumerate() {
+        let into = worn.into_tile.map_or_else(String::new, |tile| format!(" passing into {tile}"));
         writeln!(
             out,
-            "  {material}: {} triangles, {} coat vertices, {} patches, {} fins, tile {}",
+            "  {material}: {} triangles, {} coat vertices, {} patches, {} fins, tile {}{into}",
             worn.triangles, worn.vertices, worn.patches, worn.fins, worn.tile
         )?;
         if let Some(measures) = inspection.measures.get(i) {

@@ -63,6 +63,9 @@ pub struct PrimitiveSummary {
     pub primitive: usize,
     /// Tile it wears.
     pub tile: usize,
+    /// Tile that it passes into.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub into_tile: Option<usize>,
     /// Coat vertices.
     pub vertices: usize,
     /// Triangles of one shell.
@@ -78,11 +81,13 @@ pub fn summarise(coat: &Coat) -> Summary {
     let tiles: Vec<_> = coat.tiles.iter().map(tile).collect();
     let primitives: Vec<_> = coat.primitives.iter().map(primitive).collect();
     let shells = |p: &PrimitiveSummary| tiles.get(p.tile).map_or(0, |tile| tile.layers.saturating_sub(1) as usize);
+    // A passage between two tiles is drawn with each.
+    let times = |p: &PrimitiveSummary| 1 + usize::from(p.into_tile.is_some());
     let geometry: usize =
         primitives.iter().map(|p| p.vertices * VERTEX_BYTES + p.triangles * 12 + p.fins * FIN_BYTES).sum();
     Summary {
-        drawn_triangles: primitives.iter().map(|p| p.triangles * shells(p) + 2 * p.fins).sum(),
-        draw_calls: primitives.iter().map(|p| shells(p) + usize::from(p.fins > 0)).sum(),
+        drawn_triangles: primitives.iter().map(|p| times(p) * (p.triangles * shells(p) + 2 * p.fins)).sum(),
+        draw_calls: primitives.iter().map(|p| times(p) * (shells(p) + usize::from(p.fins > 0))).sum(),
         vram_bytes: geometry + tiles.iter().map(|tile| tile.vram_bytes).sum::<usize>(),
         tiles,
         primitives,
@@ -116,6 +121,7 @@ fn primitive(worn: &CoatPrimitive) -> PrimitiveSummary {
         mesh: worn.mesh,
         primitive: worn.primitive,
         tile: worn.tile,
+        into_tile: worn.blend.as_ref().map(|blend| blend.tile),
         vertices: worn.base_vertex.len(),
         triangles: worn.triangles.len(),
         patches: patches.len(),

@@ -58,6 +58,7 @@ pub fn wear(
         uv: patches.uv.clone(),
         patch: patches.patch.clone(),
         triangles,
+        blend: None,
     }
 }
 

@@ -13,7 +13,7 @@ pub struct Coat {
     pub metres_per_unit: f64,
     /// Hair textures, shared by primitives.
     pub tiles: Vec<Tile>,
-    /// One per furred primitive of the asset.
+    /// One or more per furred primitive of the asset: what lies between them is another tile, or a passage between two.
     pub primitives: Vec<CoatPrimitive>,
 }
 
@@ -109,6 +109,51 @@ pub struct CoatPrimitive {
     pub triangles: Vec<[u32; 3]>,
     /// Edges that may carry a fin.
     pub fins: Vec<FinEdge>,
+    /// The tile that it passes into, where it does.
+    pub blend: Option<Blend>,
+}
+
+/// A passage from a coat primitive's tile into another with equally many layers: both are there on the same shells, and with weight w
+/// the optical depth is (1 − w) of the first's and w of the second's, colour premultiplied.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Blend {
+    /// The second tile. Its texture coordinates are the primitive's times the first tile's edge over its own.
+    pub tile: usize,
+    /// Per coat vertex: w, in [0, 1].
+    pub weight: Vec<f32>,
+}
+
+impl CoatPrimitive {
+    /// The part of it that some of its triangles are, on the vertices that those need. Fins stay where both ends do.
+    pub fn part(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let triangles: Vec<[u32; 3]> =
+            self.triangles.iter().enumerate().filter(|(t, _)| keep(*t)).map(|(_, triangle)| *triangle).collect();
+        let mut new = vec![u32::MAX; self.base_vertex.len()];
+        let mut old = Vec::new();
+        for &v in triangles.iter().flatten() {
+            if new[v as usize] == u32::MAX {
+                new[v as usize] = old.len() as u32;
+                old.push(v as usize);
+            }
+        }
+        let of = |v: u32| new[v as usize];
+        let whole = |fin: &&FinEdge| fin.ends.iter().chain(&fin.opposite).all(|&v| of(v) != u32::MAX);
+        let moved = |fin: &FinEdge| FinEdge { ends: fin.ends.map(of), opposite: fin.opposite.map(of), ..*fin };
+        Self {
+            base_vertex: old.iter().map(|&v| self.base_vertex[v]).collect(),
+            uv: old.iter().map(|&v| self.uv[v]).collect(),
+            patch: old.iter().map(|&v| self.patch[v]).collect(),
+            offset: old.iter().map(|&v| self.offset[v]).collect(),
+            tint: old.iter().map(|&v| self.tint[v]).collect(),
+            triangles: triangles.iter().map(|t| t.map(of)).collect(),
+            fins: self.fins.iter().filter(whole).map(moved).collect(),
+            blend: self
+                .blend
+                .as_ref()
+                .map(|blend| Blend { tile: blend.tile, weight: old.iter().map(|&v| blend.weight[v]).collect() }),
+            ..*self
+        }
+    }
 }
 
 /// An edge of the coat with the faces beside it.

@@ -31,6 +31,8 @@ pub struct Mesh {
     pub colour: Option<Vec<Vec4>>,
     /// `_FUR_LENGTH`: multiplies the preset's hair length.
     pub fur_length: Option<Vec<f32>>,
+    /// `_FUR_REGION`: how much a preset's region without a map counts, in [0, 1].
+    pub fur_region: Option<Vec<f32>>,
     /// `_FUR_DIRECTION`: comb direction in world axes; need be neither unit nor tangent.
     pub fur_direction: Option<Vec<Vec3>>,
 }

@@ -86,6 +86,11 @@ pub fn slab_optical_depth(texel: &Texel, view: &View, slab_m: f32) -> f32 {
     lateral * slab_m / -view.in_tile().z + ends
 }
 
+/// Optical depth where a coat passes from one tile into another, with the weight of the second.
+pub fn blended(first: f32, second: f32, weight: f32) -> f32 {
+    (1.0 - weight) * first + weight * second
+}
+
 impl<'a> Stack<'a> {
     /// Decodes a tile's shells.
     pub fn new(tile: &'a Tile) -> Self {

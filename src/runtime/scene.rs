@@ -5,6 +5,7 @@ use crate::data::coat::{FinEdge, Tile};
 use crate::data::image::Image8;
 use crate::math::{Mat4, Vec2, Vec3, Vec4};
 use crate::shade::light::Directional;
+use std::borrow::Cow;
 
 /// Lights that one picture can have.
 pub const MAX_LIGHTS: usize = 16;
@@ -55,13 +56,13 @@ pub struct Fur<'a> {
     /// Root to the top of the stack, m.
     pub offsets_m: Vec<Vec3>,
     /// Texture coordinates in tiles.
-    pub uv: &'a [Vec2],
+    pub uv: Cow<'a, [Vec2]>,
     /// Colour factor (linear RGB) and density factor.
-    pub tint: &'a [Vec4],
+    pub tint: Cow<'a, [Vec4]>,
     /// Coat vertex indices; the outside is where the offsets point.
     pub triangles: &'a [[u32; 3]],
     /// Edges that may carry a fin.
-    pub fins: &'a [FinEdge],
+    pub fins: Cow<'a, [FinEdge]>,
 }
 
 /// Which of the three kinds of geometry to draw.

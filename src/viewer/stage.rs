@@ -3,11 +3,12 @@
 use crate::asset::Asset;
 use crate::asset::part::Part;
 use crate::asset::pose::{Pose, Posed};
-use crate::data::coat::{Coat, CoatPrimitive, Sampled, Tile};
+use crate::data::coat::{Coat, CoatPrimitive, FinEdge, Sampled, Tile};
 use crate::data::image::Image8;
 use crate::error::Result;
 use crate::math::{Vec2, Vec3};
 use crate::runtime::{Fur, Scene, Skin};
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 /// Decoded base colour textures, by glTF image.
@@ -39,7 +40,7 @@ pub fn scene<'a>(asset: &'a Asset, coat: &'a Coat, textures: &'a Textures, pose:
             let posed = part.posed(asset, pose, node, coat.metres_per_unit);
             for worn in &worn {
                 scene.skins.push(furred_skin(part, &posed, worn, &coat.tiles[worn.tile], textures));
-                scene.furs.push(fur(&posed, worn));
+                scene.furs.extend(furs(&posed, worn, &coat.tiles));
             }
             scene.skins.push(bare_skin(part, &posed, &worn, textures));
         }
@@ -55,7 +56,7 @@ pub fn points_m(scene: &Scene<'_>) -> Vec<Vec3> {
     skins.chain(tips).filter(|p| p.is_finite()).collect()
 }
 
-/// What a part wears in its pose.
+/// What a coat primitive's shells and fins are, with its first tile alone.
 pub(super) fn fur<'a>(posed: &Posed, worn: &'a CoatPrimitive) -> Fur<'a> {
     let at = |list: &[Vec3]| worn.base_vertex.iter().map(|&v| list[v as usize]).collect();
     let offsets_m = worn
@@ -69,11 +70,33 @@ pub(super) fn fur<'a>(posed: &Posed, worn: &'a CoatPrimitive) -> Fur<'a> {
         positions_m: at(&posed.positions_m),
         normals: at(&posed.normals),
         offsets_m,
-        uv: &worn.uv,
-        tint: &worn.tint,
+        uv: Cow::from(&worn.uv),
+        tint: Cow::from(&worn.tint),
         triangles: &worn.triangles,
-        fins: &worn.fins,
+        fins: Cow::from(&worn.fins),
     }
+}
+
+/// What a coat primitive is drawn as: once, or once per tile where it passes from one into another.
+fn furs<'a>(posed: &Posed, worn: &'a CoatPrimitive, tiles: &[Tile]) -> Vec<Fur<'a>> {
+    let fur = fur(posed, worn);
+    let Some(blend) = &worn.blend else { return vec![fur] };
+    // Two coats at complementary densities: drawn over one another, optical depths add.
+    let dense = |share: &dyn Fn(f32) -> f32| {
+        worn.tint.iter().zip(&blend.weight).map(|(tint, &w)| tint.truncate().extend(tint.w * share(w))).collect()
+    };
+    let (first, second) = (&tiles[worn.tile], &tiles[blend.tile]);
+    let longer = first.fin.width_m / second.fin.width_m;
+    let thicker = first.fin.thickness_m / second.fin.thickness_m;
+    let fin = |f: &FinEdge| FinEdge { u: f.u.map(|u| u * longer), thickness: f.thickness * thicker, ..*f };
+    let into = Fur {
+        tile: blend.tile,
+        uv: worn.uv.iter().map(|uv| *uv * (first.edge_m / second.edge_m)).collect(),
+        tint: dense(&|w| w),
+        fins: worn.fins.iter().map(fin).collect(),
+        ..fur.clone()
+    };
+    vec![Fur { tint: dense(&|w| 1.0 - w), ..fur }, into]
 }
 
 /// The skin under a coat, on the coat's vertices, so that it knows how much light the hair lets through.

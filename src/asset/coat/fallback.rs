@@ -29,9 +29,10 @@ pub enum Fallback {
 /// transparent meshes by the middle of their bounds, and so keep them in this order.
 pub fn add(document: &mut Document, asset: &Asset, coat: &Coat, count: u32) -> Result<()> {
     let materials = materials(document, coat, count)?;
-    let meshes: std::collections::BTreeSet<usize> = coat.primitives.iter().map(|p| p.mesh).collect();
+    let nearest: Vec<CoatPrimitive> = coat.primitives.iter().flat_map(|p| nearest(p, coat)).collect();
+    let meshes: std::collections::BTreeSet<usize> = nearest.iter().map(|p| p.mesh).collect();
     for mesh in meshes {
-        let worn: Vec<&CoatPrimitive> = coat.primitives.iter().filter(|p| p.mesh == mesh).collect();
+        let worn: Vec<&CoatPrimitive> = nearest.iter().filter(|p| p.mesh == mesh).collect();
         let mut stacks = Vec::new();
         for primitive in &worn {
             let part = part_of(asset, primitive)?;
@@ -59,6 +60,17 @@ pub fn add(document: &mut Document, asset: &Asset, coat: &Coat, count: u32) -> R
         }
     }
     Ok(())
+}
+
+/// A coat primitive without passages: every triangle of one wears the tile that it has most of.
+fn nearest(worn: &CoatPrimitive, coat: &Coat) -> Vec<CoatPrimitive> {
+    let Some(blend) = &worn.blend else { return vec![worn.clone()] };
+    let second = |t: usize| worn.triangles[t].iter().map(|&v| blend.weight[v as usize]).sum::<f32>() > 1.5;
+    let scale = coat.tiles[worn.tile].edge_m / coat.tiles[blend.tile].edge_m;
+    let mut parts = [worn.part(|t| !second(t)), worn.part(second)];
+    parts[1].tile = blend.tile;
+    parts[1].uv.iter_mut().for_each(|uv| *uv *= scale);
+    parts.into_iter().filter(|part| !part.triangles.is_empty()).collect()
 }
 
 /// Per tile, per shell: a material with the shell's texture.

@@ -13,7 +13,7 @@ use write::set_extension;
 pub use write::{dress, refuse_second, write_coat};
 
 use super::json::At;
-use crate::data::coat::{Coat, Sampled};
+use crate::data::coat::{Coat, CoatPrimitive, Sampled};
 use serde_json::json;
 
 /// Name of the extension.
@@ -21,9 +21,18 @@ pub const NAME: &str = "FURRIER_mesh_fur";
 /// Newest version of the extension; all up to it are read.
 pub const VERSION: u64 = 2;
 
-/// The oldest version of the extension that can hold `coat`: 2 where a tile was sampled on the skin.
+/// The oldest version of the extension that can hold `coat`: 2 where a tile was sampled on the skin, or a primitive of the
+/// asset wears several.
 pub fn version_of(coat: &Coat) -> u64 {
-    if coat.tiles.iter().any(|tile| tile.sampled == Sampled::Skin) { 2 } else { 1 }
+    let several = coat.primitives.windows(2).any(|two| owner(&two[0]) == owner(&two[1]));
+    let blended = coat.primitives.iter().any(|primitive| primitive.blend.is_some());
+    let on_skin = coat.tiles.iter().any(|tile| tile.sampled == Sampled::Skin);
+    if several || blended || on_skin { 2 } else { 1 }
+}
+
+/// The primitive of the asset that a coat primitive lies on.
+fn owner(primitive: &CoatPrimitive) -> (usize, usize) {
+    (primitive.mesh, primitive.primitive)
 }
 
 /// Whether a mesh is the fallback of another's coat.

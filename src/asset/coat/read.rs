@@ -4,7 +4,7 @@ use super::write::{check, part_of};
 use super::{NAME, VERSION, textures};
 use crate::asset::json::At;
 use crate::asset::{self, Asset};
-use crate::data::coat::{Coat, CoatPrimitive, FinEdge};
+use crate::data::coat::{Blend, Coat, CoatPrimitive, FinEdge};
 use crate::error::{Error, Result};
 use crate::math::{Vec2, Vec3, Vec4};
 use std::path::Path;
@@ -50,12 +50,16 @@ pub fn coat_of(asset: &Asset) -> Result<Coat> {
     for (mesh, mesh_at) in root.list("meshes")?.iter().enumerate() {
         for (primitive, at) in mesh_at.list("primitives")?.iter().enumerate() {
             let Some(wears) = at.get("extensions").and_then(|e| e.get(NAME)) else { continue };
-            let mut worn = CoatPrimitive { mesh, primitive, ..CoatPrimitive::default() };
+            let empty = CoatPrimitive { mesh, primitive, ..CoatPrimitive::default() };
             // A coat on a mesh that the default scene does not show is nobody's.
-            let Ok(part) = part_of(asset, &worn) else { continue };
-            read_primitive(asset, &wears, &mut worn, part.mirrored())?;
-            check(&worn, part, coat.tiles.len())?;
-            coat.primitives.push(worn);
+            let Ok(part) = part_of(asset, &empty) else { continue };
+            let more = wears.list("more")?;
+            for wears in std::iter::once(&wears).chain(&more) {
+                let mut worn = empty.clone();
+                read_primitive(asset, wears, &mut worn, part.mirrored())?;
+                check(&worn, part, &coat.tiles)?;
+                coat.primitives.push(worn);
+            }
         }
     }
     Ok(coat)
@@ -76,6 +80,10 @@ fn read_primitive(asset: &Asset, at: &At<'_>, worn: &mut CoatPrimitive, mirrored
     worn.triangles = indices.as_chunks::<3>().0.to_vec();
     if mirrored {
         worn.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+    if let Some(blend) = at.get("blend") {
+        let tile = blend.need("tile")?.size()?;
+        worn.blend = Some(Blend { tile, weight: floats(&blend, "weights", 1)? });
     }
     let Some(fins) = at.get("fins") else { return Ok(()) };
     let (edges, strips) = (integers(&fins, "edges", 4)?, floats(&fins, "strips", 3)?);

@@ -6,7 +6,7 @@ use crate::asset::document::Document;
 use crate::asset::encode::{Use, numbers};
 use crate::asset::image::media_type;
 use crate::asset::{Asset, Part, write};
-use crate::data::coat::{Coat, CoatPrimitive};
+use crate::data::coat::{Blend, Coat, CoatPrimitive, Sampled, Tile};
 use crate::error::{Error, Kind, Result};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
@@ -123,10 +123,18 @@ pub fn dress(asset: &Asset, coat: &Coat, fallback: Fallback) -> Result<Document>
     let mut mirror = Vec::new();
     for primitive in &coat.primitives {
         let part = part_of(asset, primitive)?;
-        check(primitive, part, coat.tiles.len())?;
+        check(primitive, part, &coat.tiles)?;
         let value = write_primitive(&mut document, primitive, part.mirrored());
         let owner = &mut document.json["meshes"][primitive.mesh]["primitives"][primitive.primitive];
-        set_extension(owner, value);
+        match owner.get_mut("extensions").and_then(|e| e.get_mut(NAME)).and_then(Value::as_object_mut) {
+            None => set_extension(owner, value),
+            // A second coat of one primitive stands beside the first.
+            Some(first) => {
+                if let Some(more) = first.entry("more").or_insert_with(|| json!([])).as_array_mut() {
+                    more.push(value);
+                }
+            }
+        }
         mirror.push(json!({"mesh": primitive.mesh, "primitive": primitive.primitive, "tile": primitive.tile}));
     }
     // Tools that drop unknown extensions keep extras: enough to find out what was baked.
@@ -173,7 +181,7 @@ pub(super) fn part_of<'a>(asset: &'a Asset, primitive: &CoatPrimitive) -> Result
 }
 
 /// Checks that every index of a coat primitive points somewhere and every number is finite.
-pub(super) fn check(primitive: &CoatPrimitive, part: &Part, tiles: usize) -> Result<()> {
+pub(super) fn check(primitive: &CoatPrimitive, part: &Part, tiles: &[Tile]) -> Result<()> {
     let n = primitive.base_vertex.len();
     let fault = |field: &str, expected: &str| {
         Err(Error::input("the coat is not consistent")
@@ -185,11 +193,22 @@ pub(super) fn check(primitive: &CoatPrimitive, part: &Part, tiles: usize) -> Res
     if lengths.iter().any(|&length| length != n) || n == 0 {
         return fault("attributes", "one entry per coat vertex, and at least one");
     }
-    if primitive.tile >= tiles {
+    if primitive.tile >= tiles.len() {
         return fault("tile", "a tile of the coat");
     }
     if primitive.base_vertex.iter().any(|&v| v as usize >= part.vertices()) {
         return fault("BASE_VERTEX", "vertices of the base primitive");
+    }
+    if let Some(Blend { tile, weight }) = &primitive.blend {
+        let alike = |a: &Tile, b: &Tile| {
+            a.shells.layers == b.shells.layers && a.sampled == Sampled::Square && b.sampled == Sampled::Square
+        };
+        if !tiles.get(*tile).is_some_and(|second| alike(&tiles[primitive.tile], second)) {
+            return fault("blend.tile", "a tile that repeats, as the first does, with as many layers");
+        }
+        if weight.len() != n || !weight.iter().all(|w| (0.0..=1.0).contains(w)) {
+            return fault("blend.weights", "a number from 0 to 1 per coat vertex");
+        }
     }
     let inside = |v: &u32| (*v as usize) < n;
     if !primitive.triangles.iter().flatten().all(inside) {
@@ -220,6 +239,9 @@ fn write_primitive(document: &mut Document, primitive: &CoatPrimitive, mirrored:
             "TINT": document.push_vec4(&primitive.tint, Use::Other),
         },
     });
+    if let Some(blend) = &primitive.blend {
+        value["blend"] = json!({"tile": blend.tile, "weights": document.push_floats(&blend.weight, 1, Use::Other)});
+    }
     if !primitive.fins.is_empty() {
         let edge = |fin: &crate::data::coat::FinEdge| {
             let [left, right] = fin.opposite;

@@ -1,0 +1,173 @@
+//! Several presets on one part: which tile each triangle wears, and where one passes into another.
+
+use super::skin::{self, Groomed};
+use super::{Steps, Task};
+use crate::asset::image;
+use crate::coat::wear::wear;
+use crate::data::coat::{Blend, CoatPrimitive, Tile};
+use crate::data::fields::Fields;
+use crate::data::mesh::Mesh;
+use crate::data::patches::Patches;
+use crate::error::{Error, Result};
+use crate::fur::groom::maps::sample;
+use crate::math::{Vec2, Vec3};
+use crate::preset::{Preset, Region};
+use std::collections::{BTreeMap, HashMap};
+
+/// Shares below this are none: eight bits of a map tell no less.
+const LEAST: f32 = 1.0 / 255.0;
+
+/// The presets of the task's regions, with as many layers and texels as the task's own: a passage needs equal stacks.
+pub(super) fn presets(preset: &Preset) -> Result<Vec<Preset>> {
+    let load = |region: &Region| {
+        let mut other = Preset::load(&region.preset)?;
+        if !other.regions.is_empty() {
+            return Err(Error::usage("a region's preset has regions itself")
+                .with_field("regions.preset")
+                .with_found(&region.preset)
+                .with_expected("a preset without regions"));
+        }
+        (other.shells.layers, other.shells.texture_size) = (preset.shells.layers, preset.shells.texture_size);
+        other.checked()
+    };
+    preset.regions.iter().map(load).collect()
+}
+
+/// What a part wears: one coat primitive for each tile that some triangle wears alone, and one for each pair that share
+/// triangles. `tiles` are the task's own and those of `presets`.
+pub(super) fn wear_all(
+    task: &Task<'_>,
+    part: usize,
+    own: &Groomed,
+    patches: &Patches,
+    (presets, tiles): (&[Preset], &[Tile]),
+    steps: &mut Steps<'_>,
+) -> Result<Vec<CoatPrimitive>> {
+    let at = &task.asset.parts[part];
+    let shares = shares(&own.mesh, &task.preset.regions)?;
+    let mut fields = vec![own.fields.clone()];
+    for preset in presets {
+        let groomed = steps.run("groom", || skin::groom(task.asset, at, preset, task.scale.metres_per_unit))?;
+        fields.push(groomed.fields);
+    }
+    let mixed = Mixed::new(&fields, tiles, &shares);
+    // Triangles by what they wear.
+    let mut groups: BTreeMap<(usize, Option<usize>), Vec<usize>> = BTreeMap::new();
+    for (t, triangle) in own.mesh.triangles.iter().enumerate() {
+        let mut worn: Vec<(usize, f32)> = (0..tiles.len())
+            .map(|tile| (tile, triangle.iter().map(|&v| shares[v as usize][tile]).sum()))
+            .filter(|&(_, share)| share > 0.0)
+            .collect();
+        // Where three meet, the two there is most of.
+        worn.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        worn.truncate(2);
+        worn.sort_by_key(|&(tile, _)| tile);
+        groups.entry((worn[0].0, worn.get(1).map(|w| w.0))).or_default().push(t);
+    }
+    let dressed = |((tile, into), triangles): (&(usize, Option<usize>), &Vec<usize>)| {
+        let fields = mixed.for_tile(&tiles[*tile]);
+        let subset = subset(patches, triangles, tiles[0].edge_m / tiles[*tile].edge_m);
+        let local = |v, offset_m| at.local_offset(v, offset_m, task.scale.metres_per_unit);
+        let worn = wear(&own.mesh, &fields, &subset, &tiles[*tile], task.seed(part), local);
+        let weight = |second: usize, v: u32| {
+            let share = &shares[v as usize];
+            let both = share[*tile] + share[second];
+            if both > 0.0 { share[second] / both } else { 0.5 }
+        };
+        let blend = into.map(|second| Blend {
+            tile: second,
+            weight: worn.base_vertex.iter().map(|&v| weight(second, v)).collect(),
+        });
+        CoatPrimitive { mesh: at.mesh, primitive: at.primitive, tile: *tile, blend, ..worn }
+    };
+    Ok(steps.run("wear", || groups.iter().map(dressed).filter(|worn| !worn.triangles.is_empty()).collect()))
+}
+
+/// Per vertex, the share of the preset's own tile and of each region's; they sum to 1.
+fn shares(mesh: &Mesh, regions: &[Region]) -> Result<Vec<Vec<f32>>> {
+    let mut shares = vec![vec![1.0]; mesh.positions_m.len()];
+    for (i, region) in regions.iter().enumerate() {
+        let fault = |what: &str, expected: &str| {
+            let error = Error::usage(what).with_field(format!("regions[{i}].map")).with_expected(expected);
+            Err(error.with_found(region.map.as_ref().map_or("none".into(), |map| map.display().to_string())))
+        };
+        let of: Vec<f32> = match (&region.map, mesh.uv_sets.first(), &mesh.fur_region) {
+            (Some(map), Some(uv), _) => {
+                let image = image::load(map)?;
+                uv.iter().map(|&uv| sample(&image, uv).x).collect()
+            }
+            (Some(_), None, _) => return fault("a region's map needs texture coordinates", "a mesh with a UV set"),
+            (None, _, Some(attribute)) => attribute.clone(),
+            (None, _, None) => {
+                return fault("a region has no place", "a map, or a mesh with the vertex attribute _FUR_REGION");
+            }
+        };
+        // Vertices at one point have one share, or shells would crack where texture coordinates do.
+        let mut sums = vec![(0.0, 0.0); of.len()];
+        for (&class, share) in mesh.position_class.iter().zip(of) {
+            let sum = &mut sums[class as usize];
+            *sum = (sum.0 + share, sum.1 + 1.0);
+        }
+        let of = mesh.position_class.iter().map(|&class| sums[class as usize].0 / sums[class as usize].1);
+        for (shares, share) in shares.iter_mut().zip(of) {
+            let share = if share < LEAST { 0.0 } else { share.min(1.0) };
+            let share = if share > 1.0 - LEAST { 1.0 } else { share };
+            shares.iter_mut().for_each(|s| *s *= 1.0 - share);
+            shares.push(share);
+        }
+    }
+    Ok(shares)
+}
+
+/// Fields in which every tile has its share, so that what lies side by side goes on.
+struct Mixed {
+    /// Lengths here are those of the offsets, m.
+    fields: Fields,
+}
+
+impl Mixed {
+    fn new(fields: &[Fields], tiles: &[Tile], shares: &[Vec<f32>]) -> Self {
+        let count = shares.len();
+        let sum = |v: usize, of: &dyn Fn(usize) -> f32| -> f32 {
+            (0..tiles.len()).map(|tile| shares[v][tile] * of(tile)).sum()
+        };
+        let sum3 = |v: usize, of: &dyn Fn(usize) -> Vec3| -> Vec3 {
+            (0..tiles.len()).map(|tile| shares[v][tile] * of(tile)).sum()
+        };
+        Self {
+            fields: Fields {
+                length: (0..count).map(|v| sum(v, &|t| tiles[t].height_m * fields[t].length[v])).collect(),
+                density: (0..count).map(|v| sum(v, &|t| fields[t].density[v])).collect(),
+                direction: fields[0].direction.clone(),
+                lean: (0..count).map(|v| sum3(v, &|t| fields[t].lean[v]).normalize_or(fields[0].lean[v])).collect(),
+                clump: fields[0].clump.clone(),
+                tint: (0..count).map(|v| sum3(v, &|t| fields[t].tint[v])).collect(),
+            },
+        }
+    }
+
+    /// With lengths over a tile's height, as a coat of it needs them.
+    fn for_tile(&self, tile: &Tile) -> Fields {
+        let mut fields = self.fields.clone();
+        fields.length.iter_mut().for_each(|length| *length /= tile.height_m);
+        fields
+    }
+}
+
+/// Some triangles of patches on the vertices that they need, with coordinates `scale` times as large.
+fn subset(patches: &Patches, triangles: &[usize], scale: f32) -> Patches {
+    let mut new: HashMap<u32, u32> = HashMap::new();
+    let mut part = Patches { extent: Vec2::ZERO, ..Patches::default() };
+    for &t in triangles {
+        let triangle = patches.triangles[t].map(|old| {
+            *new.entry(old).or_insert_with(|| {
+                part.base_vertex.push(patches.base_vertex[old as usize]);
+                part.uv.push(patches.uv[old as usize] * scale);
+                part.patch.push(patches.patch[old as usize]);
+                part.uv.len() as u32 - 1
+            })
+        });
+        part.triangles.push(triangle);
+    }
+    part
+}

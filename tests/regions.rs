@@ -1,0 +1,170 @@
+//! Two presets on one skin, and the passage between them.
+
+use furrier::asset::{self, Fallback};
+use furrier::bake::units::Units;
+use furrier::bake::{Method, Request, bake};
+use furrier::data::coat::{Coat, CoatPrimitive};
+use furrier::gpu::{Choice, Gpu};
+use furrier::math::{Mat4, Vec3, Vec4};
+use furrier::preset::Preset;
+use furrier::runtime::cpu::{self, Stack};
+use furrier::runtime::gpu::Renderer;
+use furrier::runtime::{Show, View};
+use furrier::viewer::stage;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+const PIXELS: u32 = 192;
+/// Columns of the picture that are averaged.
+const BINS: usize = 24;
+
+/// A bare preset with this much hair, upright.
+fn preset(guard_per_cm2: f32, length_mm: f32, rest: &str) -> String {
+    format!(
+        "size_m = 0.3\n[guard]\ndensity_per_cm2 = {guard_per_cm2}\nlength = {{ mm = {length_mm} }}\n[undercoat]\n\
+         density_per_cm2 = 0\n[groom]\ncomb = \"upright\"\nlean_deg = 0\ngravity = 0\n[colour]\nfrom = \"preset\"\n\
+         [shells]\nlayers = 8\ntexture_size = 64\n[fins]\ntexture_width = 16\ntexture_height = 16\n{rest}"
+    )
+}
+
+/// The plane with sparse long hair at the left, dense shorter hair at the right, and a ramp in between.
+fn baked(folder: &Path) -> (asset::Asset, Coat) {
+    let ramp = image::GrayImage::from_fn(64, 4, |x, _| {
+        image::Luma([((x as f32 - 16.0) / 32.0 * 255.0).clamp(0.0, 255.0) as u8])
+    });
+    ramp.save(folder.join("ramp.png")).unwrap();
+    std::fs::write(folder.join("dense.toml"), preset(300.0, 6.0, "")).unwrap();
+    let regions = "[[regions]]\npreset = \"dense.toml\"\nmap = \"ramp.png\"\n";
+    std::fs::write(folder.join("sparse.toml"), preset(80.0, 8.0, regions)).unwrap();
+    let out = folder.join("two.glb");
+    let request = Request {
+        input: "sample:plane".into(),
+        out: out.clone(),
+        preset: Preset::load(&folder.join("sparse.toml").to_string_lossy()).unwrap(),
+        presets: vec![],
+        materials: vec![],
+        units: Units::Metres,
+        method: Method::Lapped,
+        seed: 1,
+        fallback: Fallback::Shells(2),
+        judge: false,
+    };
+    bake(&request, &mut |_| ()).unwrap();
+    asset::read_coat(&out).unwrap()
+}
+
+/// Coverage of shells by columns of a picture of the whole plane, seen along a ray 40° off its normal, across the ramp.
+fn columns(gpu: &Gpu, asset: &asset::Asset, coat: &Coat) -> Vec<f32> {
+    let (sin, cos) = 40.0_f32.to_radians().sin_cos();
+    let direction = Vec3::new(0.0, -cos, -sin);
+    let scale = 2.0 / 0.16;
+    let view = View {
+        clip_from_world: Mat4::from_cols(
+            Vec4::new(scale, 0.0, 0.0, 0.0),
+            Vec4::new(0.0, scale * direction.z / direction.y, -1.0, 0.0),
+            Vec4::new(0.0, -scale, 0.0, 0.0),
+            Vec4::new(0.0, 0.0, 0.5, 1.0),
+        ),
+        eye: Vec4::from((-direction, 0.0)),
+        size: [PIXELS; 2],
+        lights: vec![],
+        ambient: Vec3::ONE,
+    };
+    let textures = stage::textures(asset).unwrap();
+    let pose = asset.rest_pose().unwrap();
+    let scene = stage::scene(asset, coat, &textures, &pose);
+    let renderer = Renderer::new(gpu, &coat.tiles, 1).unwrap();
+    let show = Show { skin: false, shells: true, fins: false };
+    let picture = renderer.draw(&scene, &view, show).unwrap().picture;
+    let width = PIXELS as usize / BINS;
+    (0..BINS)
+        .map(|bin| {
+            let inside = |i: &usize| i % PIXELS as usize / width == bin;
+            let sum: f32 = (0..picture.pixels.len()).filter(inside).map(|i| picture.pixels[i][3]).sum();
+            sum / (picture.pixels.len() / BINS) as f32
+        })
+        .collect()
+}
+
+/// Whether coverage rises all the way from the left to the right, but for the noise of hair.
+fn rises(columns: &[f32]) -> bool {
+    let mut highest = 0.0_f32;
+    columns.iter().all(|&c| {
+        let falls = c < highest - 0.015;
+        highest = highest.max(c);
+        !falls
+    })
+}
+
+/// Greatest step between neighbouring columns.
+fn step(columns: &[f32]) -> f32 {
+    columns.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max)
+}
+
+#[test]
+fn coverage_rises_from_one_tile_to_the_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let (asset, coat) = baked(folder.path());
+    let kinds: Vec<_> = coat.primitives.iter().map(|p| (p.tile, p.blend.as_ref().map(|b| b.tile))).collect();
+    assert_eq!(kinds, [(0, None), (0, Some(1)), (1, None)], "one tile where one is enough");
+
+    // Every triangle once, and what lies at one vertex lies at one place.
+    let whole = asset.parts[0].stored.triangles.len();
+    assert_eq!(coat.primitives.iter().map(|p| p.triangles.len()).sum::<usize>(), whole);
+    let mut offsets: BTreeMap<u32, Vec3> = BTreeMap::new();
+    for primitive in &coat.primitives {
+        for (&v, &offset) in primitive.base_vertex.iter().zip(&primitive.offset) {
+            assert!(
+                offset.distance(*offsets.entry(v).or_insert(offset)) < 1e-6 * offset.length(),
+                "vertex {v} is torn"
+            );
+        }
+    }
+
+    let gpu = Gpu::open(&Choice::Auto).unwrap();
+    let seen = columns(&gpu, &asset, &coat);
+    println!("{seen:.3?}");
+    assert!(rises(&seen));
+    let (left, right) = (seen[2], seen[BINS - 3]);
+    assert!(seen[BINS / 2] > left + 0.1 && seen[BINS / 2] < right - 0.05, "the middle is in the middle");
+    // A step between columns is where the ramp's third and two thirds are, not where primitives meet.
+    let noise = step(&seen[..5]).max(step(&seen[19..]));
+    let ramp = (right - left) / 10.0;
+    println!("steps: at most {:.3}; hair alone {noise:.3}, ramp {ramp:.3}", step(&seen));
+    assert!(step(&seen) < noise + 2.0 * ramp);
+
+    // Planted: the second tile left out of the passage.
+    let mut faulty = coat.clone();
+    let thinned = |p: &CoatPrimitive| match &p.blend {
+        Some(blend) => p.tint.iter().zip(&blend.weight).map(|(t, w)| t.truncate().extend(t.w * (1.0 - w))).collect(),
+        None => p.tint.clone(),
+    };
+    faulty.primitives.iter_mut().for_each(|p| (p.tint, p.blend) = (thinned(p), None));
+    let seen = columns(&gpu, &asset, &faulty);
+    println!("planted {seen:.3?}");
+    assert!(!rises(&seen), "half a passage passes");
+}
+
+#[test]
+fn halfway_the_optical_depth_lies_between_the_tiles() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_, coat) = baked(folder.path());
+    let stacks: Vec<_> = coat.tiles.iter().map(Stack::new).collect();
+    let view = cpu::View {
+        direction: Vec3::new(0.6, 0.0, -0.8),
+        skin_from_tile: furrier::math::Mat3::IDENTITY,
+        pixel: 1.0 / 64.0,
+    };
+    for i in 0..64 {
+        let uv = furrier::math::Vec2::new((i % 8) as f32, (i / 8) as f32) / 8.0;
+        let [a, b] = [0, 1].map(|tile| stacks[tile].gain(&view) * stacks[tile].optical_depth(uv, &view));
+        let mut last = a;
+        for step in 0..=8 {
+            let depth = cpu::blended(a, b, step as f32 / 8.0);
+            assert!((depth - last) * (b - a) >= 0.0, "not monotone");
+            last = depth;
+        }
+        assert!((cpu::blended(a, b, 0.5) - 0.5 * (a + b)).abs() < 1e-6 * (a + b));
+        assert_eq!((cpu::blended(a, b, 0.0), cpu::blended(a, b, 1.0)), (a, b));
+    }
+}
