@@ -17,6 +17,7 @@ mod common;
 mod defocus;
 mod docs;
 mod field;
+mod formulas;
 mod hard_renders;
 mod harness;
 mod hostile;

@@ -1,10 +1,10 @@
 //! Every shader parses and validates, and its structs lie in memory as Rust's do. Needs no adapter.
 
 use furrier::gpu::{Source, compose};
+use furrier::render::gpu::items::{InsideItem, LightItem, StrandItem, StretchItem, TriangleItem, VertexItem};
 use furrier::render::gpu::kernels;
 use furrier::render::gpu::layout::{
-    BlocksUniform, InsideItem, KindUniform, LightItem, LobeUniform, SceneUniform, StrandItem, StretchItem,
-    TriangleItem, VertexItem, ViewUniform as CameraUniform,
+    BlocksUniform, KindUniform, LobeUniform, SceneUniform, ViewUniform as CameraUniform,
 };
 use furrier::runtime::gpu::layout::{CoatVertex, FinInstance, LightUniform, Mip, SkinVertex, TileUniform, ViewUniform};
 use furrier::runtime::gpu::pipelines::{FIN, RESOLVE, SHARED, SHELL, SKIN};

@@ -39,14 +39,40 @@ fn lobe_along(index: u32, half_rad: f32) -> f32 {
     return scene.lobes[index].albedo * exp(scene.lobes[index].scale * x * x);
 }
 
+// Arc cosine within 2e-8 (Abramowitz and Stegun 1964, 4.4.46): what drivers give is off by a thousandth.
+fn arc_cosine(cosine: f32) -> f32 {
+    let x = min(abs(cosine), 1.0);
+    var sum = 0.00667009 - 0.0012624911 * x;
+    sum = sum * x - 0.017088126;
+    sum = sum * x + 0.03089188;
+    sum = sum * x - 0.050174303;
+    sum = sum * x + 0.08897899;
+    sum = sum * x - 0.2145988;
+    sum = sum * x + 1.5707963;
+    let right = sqrt(1.0 - x) * sum;
+    return select(right, PI - right, cosine < 0.0);
+}
+
+// Cosine of an angle in [-π, π]: 1 - 2 sin²(x/2), sin by its Taylor polynomial.
+fn cosine_of(angle_rad: f32) -> f32 {
+    let x = 0.5 * angle_rad;
+    let square = x * x;
+    var sum = 1.0 / 362880.0 - square / 39916800.0;
+    sum = sum * square - 1.0 / 5040.0;
+    sum = sum * square + 1.0 / 120.0;
+    sum = sum * square - 1.0 / 6.0;
+    let sine = x * (sum * square + 1.0);
+    return 1.0 - 2.0 * sine * sine;
+}
+
 // The lobes of Sadeghi et al. 2010: (not tinted, tinted once, tinted twice).
 fn guard_lobes(angles: Angles) -> vec3<f32> {
-    let theta_in = asin(angles.sin_in);
-    let theta_out = asin(angles.sin_out);
+    let theta_in = 0.5 * PI - arc_cosine(angles.sin_in);
+    let theta_out = 0.5 * PI - arc_cosine(angles.sin_out);
     let half_rad = 0.5 * (theta_in + theta_out);
-    let cos_difference = max(cos(0.5 * (theta_in - theta_out)), 1e-3);
+    let cos_difference = max(cosine_of(0.5 * (theta_in - theta_out)), 1e-3);
     let spread = 1.0 / (cos_difference * cos_difference);
-    let azimuth_rad = acos(angles.cos_azimuth);
+    let azimuth_rad = arc_cosine(angles.cos_azimuth);
     let surround = sqrt(max(0.5 * (1.0 + angles.cos_azimuth), 0.0)) * scene.surround_norm;
     let behind = PI - azimuth_rad;
     let beside = azimuth_rad - scene.glint_angle_rad;

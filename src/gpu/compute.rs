@@ -1,6 +1,6 @@
 //! Compute passes: layouts, kernels and how they are sent off.
 
-use super::{Gpu, Source};
+use super::Gpu;
 use crate::error::{Error, Kind, Result};
 
 /// What a kernel binds at one place.
@@ -51,32 +51,28 @@ impl Gpu {
         self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 
-    /// Compiles the only entry point of `main`, which binds `groups` from 0 on, without gaps.
-    ///
-    /// # Errors
-    /// As [`super::compose`].
+    /// The only entry point of `module`, which binds `groups` from 0 on, without gaps.
     pub fn kernel(
         &self,
-        main: Source,
-        shared: &[Source],
+        label: &str,
+        module: &wgpu::ShaderModule,
         groups: &[&wgpu::BindGroupLayout],
         constants: &[(&str, f64)],
-    ) -> Result<Kernel> {
-        let module = self.shader(main, shared)?;
+    ) -> Kernel {
         let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(main.path),
+            label: Some(label),
             bind_group_layouts: &groups.iter().copied().map(Some).collect::<Vec<_>>(),
             immediate_size: 0,
         });
         let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(main.path),
+            label: Some(label),
             layout: Some(&layout),
-            module: &module,
+            module,
             entry_point: None,
             compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
             cache: None,
         });
-        Ok(Kernel { pipeline })
+        Kernel { pipeline }
     }
 
     /// A buffer of `count` items of `item_bytes` that shaders read and write; never empty.

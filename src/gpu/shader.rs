@@ -15,22 +15,46 @@ pub struct Source {
     pub text: &'static str,
 }
 
+/// Files that others import, read once for many.
+pub struct Library {
+    composer: Composer,
+}
+
+impl Library {
+    /// Of `shared`, which must be given in order: imported before importing.
+    ///
+    /// # Errors
+    /// [`Kind::Device`] with the file and the compiler's message.
+    pub fn new(shared: &[Source]) -> Result<Self> {
+        let capabilities = Capabilities::default() | Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+        let mut composer = Composer::default().with_capabilities(capabilities);
+        for source in shared {
+            let described =
+                ComposableModuleDescriptor { source: source.text, file_path: source.path, ..Default::default() };
+            if let Err(error) = composer.add_composable_module(described) {
+                return Err(fault(source.path, &error.emit_to_string(&composer)));
+            }
+        }
+        Ok(Self { composer })
+    }
+
+    /// The module of `main` with what it imports.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn compose(&mut self, main: Source) -> Result<wgpu::naga::Module> {
+        let described = NagaModuleDescriptor { source: main.text, file_path: main.path, ..Default::default() };
+        let composed = self.composer.make_naga_module(described);
+        composed.map_err(|error| fault(main.path, &error.emit_to_string(&self.composer)))
+    }
+}
+
 /// The module of `main` with what it imports from `shared`, which must be given in order: imported before importing.
 ///
 /// # Errors
 /// [`Kind::Device`] with the file and the compiler's message.
 pub fn compose(main: Source, shared: &[Source]) -> Result<wgpu::naga::Module> {
-    let capabilities = Capabilities::default() | Capabilities::SHADER_FLOAT16_IN_FLOAT32;
-    let mut composer = Composer::default().with_capabilities(capabilities);
-    for source in shared {
-        let described =
-            ComposableModuleDescriptor { source: source.text, file_path: source.path, ..Default::default() };
-        if let Err(error) = composer.add_composable_module(described) {
-            return Err(fault(source.path, &error.emit_to_string(&composer)));
-        }
-    }
-    let described = NagaModuleDescriptor { source: main.text, file_path: main.path, ..Default::default() };
-    composer.make_naga_module(described).map_err(|error| fault(main.path, &error.emit_to_string(&composer)))
+    Library::new(shared)?.compose(main)
 }
 
 fn fault(path: &str, message: &str) -> Error {
@@ -43,7 +67,15 @@ impl Gpu {
     /// # Errors
     /// As [`compose`].
     pub fn shader(&self, main: Source, shared: &[Source]) -> Result<wgpu::ShaderModule> {
-        let module = compose(main, shared)?;
+        self.shader_of(&mut Library::new(shared)?, main)
+    }
+
+    /// The same, with files that were read before.
+    ///
+    /// # Errors
+    /// As [`compose`].
+    pub fn shader_of(&self, library: &mut Library, main: Source) -> Result<wgpu::ShaderModule> {
+        let module = library.compose(main)?;
         Ok(self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(main.path),
             source: wgpu::ShaderSource::Naga(Cow::Owned(module)),

@@ -1,7 +1,8 @@
 //! One band of rows: its buffers, and the passes that draw it.
 
+use super::items::StretchItem;
 use super::kernels::Kernels;
-use super::layout::{StretchItem, Totals, ViewUniform};
+use super::layout::{Totals, ViewUniform};
 use super::plan::Room;
 use super::scene::GpuScene;
 use crate::error::Result;

@@ -1,7 +1,7 @@
 //! The kernels of a picture and what they bind.
 
-use crate::error::Result;
-use crate::gpu::{Binding, Gpu, Kernel, Source};
+use crate::error::{Error, Result};
+use crate::gpu::{Binding, Gpu, Kernel, Library, Source};
 
 macro_rules! source {
     ($path:literal) => {
@@ -123,23 +123,41 @@ impl Kernels {
     pub(super) fn new(gpu: &Gpu, simplified: bool) -> Result<Self> {
         let layouts = Layouts::new(gpu);
         let Layouts { scene, volume, frame, blocks, one, entrances, march, guard, order, composite } = &layouts;
-        let kernel = |main, own: &[&wgpu::BindGroupLayout], constants: &[(&str, f64)]| {
-            gpu.kernel(main, &SHARED, &[&[scene, volume], own].concat(), constants)
+        let mut library = Library::new(&SHARED)?;
+        let mut compile = |main: Source, own: &[&wgpu::BindGroupLayout], variants: &[&[(&str, f64)]]| {
+            let module = gpu.shader_of(&mut library, main)?;
+            let groups = [&[scene, volume], own].concat();
+            let kernels = variants.iter().map(|constants| gpu.kernel(main.path, &module, &groups, constants));
+            Ok::<_, Error>(kernels.collect::<Vec<_>>())
         };
-        let both = |main, own: &[_], name| Ok([kernel(main, own, &[(name, 0.0)])?, kernel(main, own, &[(name, 1.0)])?]);
+        let mut one_of = |main, own: &[_], constants: &[_]| Ok::<_, Error>(compile(main, own, &[constants])?.remove(0));
+        let simplified = [("SIMPLIFIED", f64::from(simplified))];
+        let density = one_of(DENSITY, &[blocks], &[])?;
+        let shadow = one_of(SHADOW, &[blocks], &[])?;
+        let strands = one_of(STRANDS, &[frame, one], &[])?;
+        let march_kernel = one_of(MARCH, &[frame, march], &[])?;
+        let trim = one_of(TRIM, &[frame, guard], &[])?;
+        let order_kernel = one_of(ORDER, &[frame, order], &[])?;
+        let composite_kernel = one_of(COMPOSITE, &[frame, composite], &simplified)?;
+        let poison = one_of(POISON, &[frame, one], &[])?;
+        let mut both = |main, own: &[_], name| {
+            let mut kernels = compile(main, own, &[&[(name, 0.0)], &[(name, 1.0)]])?;
+            let second = kernels.remove(1);
+            Ok::<_, Error>([kernels.remove(0), second])
+        };
         Ok(Self {
-            density: kernel(DENSITY, &[blocks], &[])?,
-            shadow: kernel(SHADOW, &[blocks], &[])?,
-            strands: kernel(STRANDS, &[frame, one], &[])?,
+            density,
+            shadow,
+            strands,
             skin: both(SKIN, &[frame], "NAME")?,
             entrances: both(ENTRANCES, &[frame, entrances], "FILL")?,
             allot: both(ALLOT, &[frame], "OF_FRAGMENTS")?,
-            march: kernel(MARCH, &[frame, march], &[])?,
+            march: march_kernel,
             guard: both(GUARD, &[frame, guard], "FILL")?,
-            trim: kernel(TRIM, &[frame, guard], &[])?,
-            order: kernel(ORDER, &[frame, order], &[])?,
-            composite: kernel(COMPOSITE, &[frame, composite], &[("SIMPLIFIED", f64::from(simplified))])?,
-            poison: kernel(POISON, &[frame, one], &[])?,
+            trim,
+            order: order_kernel,
+            composite: composite_kernel,
+            poison,
             layouts,
         })
     }

@@ -1,9 +1,8 @@
 //! A pelt on the device: skin, hair and lights, and the shell's stored density and shadow.
 
+use super::items::{InsideItem, LightItem, NOTHING, StrandItem, TriangleItem, VertexItem};
 use super::kernels::Kernels;
-use super::layout::{
-    BlocksUniform, InsideItem, LightItem, NOTHING, SceneUniform, StrandItem, TriangleItem, VertexItem,
-};
+use super::layout::{BlocksUniform, SceneUniform};
 use crate::error::Result;
 use crate::gpu::{Gpu, Timer};
 use crate::math::Vec3;
