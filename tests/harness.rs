@@ -207,3 +207,12 @@ fn twins_tell_two_pixels_in_a_thousand() {
     }
     assert!(share_alike(&a, &b) < 0.999);
 }
+
+#[test]
+fn the_reference_sees_a_light_a_tenth_too_weak() {
+    let mut lighting = crate::pelts::studio();
+    lighting.key.irradiance *= 0.9;
+    lighting.ambient *= 0.9;
+    let difference = crate::oracle::against_reference(&lighting);
+    assert_eq!(crate::oracle::fault(&difference), Some("bias"));
+}

@@ -26,6 +26,7 @@ mod laws;
 mod made;
 mod meshes;
 mod metrics;
+mod oracle;
 mod outputs;
 mod patch;
 mod pelt_twins;

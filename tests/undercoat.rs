@@ -91,7 +91,7 @@ fn meets(hairs: &Cylinders, through: DVec3, direction: DVec3) -> bool {
 }
 
 /// A level pelt large enough that no ray leaves it sideways.
-fn level(edge_m: f32) -> Mesh {
+pub fn level(edge_m: f32) -> Mesh {
     pelts::grid(8, 8, |u, v| Vec3::new(u - 0.5, v - 0.5, 0.0) * edge_m)
 }
 

@@ -5,6 +5,7 @@ use super::units::{self, Units};
 use crate::asset;
 use crate::asset::strands::Export;
 use crate::data::camera::Camera;
+use crate::data::film::Film;
 use crate::data::mesh::Mesh;
 use crate::error::Result;
 use crate::fur::groom::fibre::Fibre;
@@ -14,6 +15,7 @@ use crate::preset::Preset;
 use crate::render::device::{self, Device, Drawn};
 use crate::render::pelt::{Hair, Lighting, Pelt};
 use crate::render::picture::{Picture, Settings, draw};
+use crate::render::reference;
 use std::f32::consts::PI;
 
 /// Vertical field of view of cameras that frame, degrees.
@@ -147,6 +149,14 @@ impl Grown {
     /// As [`device::draw`].
     pub fn draw_on(&self, device: &Device, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Drawn> {
         device::draw(device, &self.pelt(), lighting, camera, settings)
+    }
+
+    /// Renders what [`Self::draw`] should have drawn, slowly.
+    ///
+    /// # Errors
+    /// As [`reference::draw`].
+    pub fn reference(&self, lighting: &Lighting, camera: &Camera, settings: &reference::Settings) -> Result<Film> {
+        reference::draw(&self.pelt(), lighting, camera, settings)
     }
 
     /// A camera at an azimuth and elevation that frames skin and hair; `distance` 1 fills the picture's height or width.

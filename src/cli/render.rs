@@ -13,7 +13,8 @@ use crate::render::defocus::{self, Lens};
 use crate::render::develop::{Development, develop};
 use crate::render::device::{Device, Drawn};
 use crate::render::pelt::Lighting;
-use crate::render::picture::{Picture, Row, Settings};
+use crate::render::picture::{Counts, Picture, Row, Settings};
+use crate::render::reference::{self, GuardShadow};
 use crate::render::resolve::Blending;
 use crate::render::view::View;
 use crate::shade::environment::Environment;
@@ -84,6 +85,15 @@ pub struct Render {
     /// How much work to spend
     #[arg(long, value_enum, default_value = "preview")]
     quality: Quality,
+    /// Most rays per pixel of a reference
+    #[arg(long, value_name = "N", default_value_t = reference::SAMPLES, value_parser = clap::value_parser!(u32).range(1..))]
+    samples: u32,
+    /// Where the rays of a reference pass: two pictures of different numbers tell its noise
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    ray_seed: u64,
+    /// How a reference lets guard hair shadow: as the renderer does, or followed through the coat
+    #[arg(long, value_enum, default_value = "flat")]
+    reference_shadow: ReferenceShadow,
     /// Which hair to draw
     #[arg(long, value_enum, default_value = "hybrid")]
     only: Hair,
@@ -119,6 +129,16 @@ enum Quality {
     Preview,
     /// Four passes, shorter steps
     Final,
+    /// Another algorithm in f64, ray by ray: minutes to hours, to measure the others by
+    Reference,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ReferenceShadow {
+    /// A flat layer's closed form
+    Flat,
+    /// Integrated along the ray to the light
+    Followed,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -161,7 +181,10 @@ impl Render {
         let camera = self.camera(&grown, size)?;
         let lighting = self.lighting(&camera)?;
         self.check_lens()?;
-        let mut drawn = grown.draw_on(&device, &lighting, &camera, &self.settings_of(size))?;
+        let mut drawn = match self.quality {
+            Quality::Reference => self.reference(&grown, &lighting, &camera, size)?,
+            _ => grown.draw_on(&device, &lighting, &camera, &self.settings_of(size))?,
+        };
         drawn.notes.iter().for_each(|note| console.warning(note));
         self.defocus(&mut drawn.picture, &camera, &grown)?;
         let picture = &drawn.picture;
@@ -266,10 +289,28 @@ impl Render {
         Ok(())
     }
 
+    fn reference(&self, grown: &Grown, lighting: &Lighting, camera: &Camera, size: [usize; 2]) -> Result<Drawn> {
+        let start = Instant::now();
+        let shadow = match self.reference_shadow {
+            ReferenceShadow::Flat => GuardShadow::Flat,
+            ReferenceShadow::Followed => GuardShadow::Followed,
+        };
+        let settings = reference::Settings {
+            samples: self.samples as usize,
+            seed: self.ray_seed,
+            shadow,
+            ..reference::Settings::new(size)
+        };
+        let film = grown.reference(lighting, camera, &settings)?;
+        let rows = vec![Row { name: "reference", ms: start.elapsed().as_secs_f64() * 1e3, bytes: 0 }];
+        let picture = Picture { film, rows, counts: Counts::default() };
+        Ok(Drawn { picture, device: "cpu".into(), notes: Vec::new() })
+    }
+
     fn settings_of(&self, size: [usize; 2]) -> Settings {
         let mut settings = match self.quality {
-            Quality::Preview => Settings { size, ..Settings::default() },
             Quality::Final => Settings::best(size),
+            Quality::Preview | Quality::Reference => Settings { size, ..Settings::default() },
         };
         if let Some(attenuation_per_m) = self.simplified {
             settings.blending = Blending::Simplified { attenuation_per_m };

@@ -15,6 +15,7 @@ pub mod pelt;
 pub mod picture;
 pub mod pieces;
 pub mod rays;
+pub mod reference;
 pub mod resolve;
 pub mod shell;
 pub mod skin;

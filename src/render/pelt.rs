@@ -109,8 +109,12 @@ impl Layer {
 /// slant. Lights below the horizon count as on it; what the body hides is [`terminator`]'s part.
 pub fn slant_depth(above: f32, to_light: Vec3, normal: Vec3, lean: Vec3) -> f32 {
     let along = to_light.dot(lean);
-    above * (1.0 - along * along).max(0.0).sqrt() / to_light.dot(normal).max(HORIZON)
+    (above * (1.0 - along * along).max(0.0).sqrt() / to_light.dot(normal).max(HORIZON)).min(DEEPEST)
 }
+
+/// Greatest optical depth of a flat layer: hair deeper than this is hidden as well as it is dark; where it is seen all the
+/// same, at a border or in a parting, light finds the way that the eye found.
+pub const DEEPEST: f32 = 2.5;
 
 /// Least cosine between normal and light for which hair shadows as a flat layer.
 const HORIZON: f32 = 0.08;
@@ -125,5 +129,5 @@ pub fn terminator(to_light: Vec3, normal: Vec3) -> f32 {
 /// Optical depth towards the whole sky under hair area `above`: exp(−1.5 τ) stands in for the mean of exp(−τ/cos θ) over
 /// the hemisphere (2 E₃(τ), within 0.05), with the mean sine π/4 between hair and light.
 pub fn sky_depth(above: f32) -> f32 {
-    1.5 * std::f32::consts::FRAC_PI_4 * above
+    (1.5 * std::f32::consts::FRAC_PI_4 * above).min(DEEPEST)
 }
