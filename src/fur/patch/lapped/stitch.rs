@@ -21,6 +21,8 @@ use std::collections::VecDeque;
 const NEAR: [f64; 4] = [0.18, 0.28, 0.35, 0.42];
 /// Length ℓ over which displacements fade, in tiles.
 const FADE: f64 = 2.0;
+/// … and at most so many mean edges: the steps that a solution takes grow with them.
+const FADE_EDGES: f64 = 8.0;
 /// Bounds of cotangent weights, as the comb's.
 const WEIGHTS: [f64; 2] = [0.05, 20.0];
 /// Passes at most, those that only give up counted.
@@ -58,7 +60,7 @@ pub(super) fn stitch(surface: &Surface, tile_edge_m: f64, patches: &mut Patches)
     let before = patches.uv.clone();
     let bent: Vec<bool> = (0..faces.len()).map(|t| beyond(patches, t)).collect();
     let bad = |patches: &Patches| (0..faces.len()).filter(|&t| !bent[t] && beyond(patches, t)).collect::<Vec<_>>();
-    let skin = Skin { laplacian: Laplacian::new(faces, tile_edge_m, patches), before: &before };
+    let skin = Skin { laplacian: Laplacian::new(faces, fade_m(faces, tile_edge_m), patches), before: &before };
     // Where the skin itself keeps vertices apart in one place, the texture goes on and shall.
     let own = edges(topology, patches).filter(|edge| edge.ends[0] != edge.ends[1] && edge.joined(patches));
     let own: Vec<Weld> = own.map(|edge| Weld { edge, whole: IVec2::ZERO, off: 0.0 }).collect();
@@ -218,8 +220,15 @@ impl Skin<'_> {
     }
 }
 
+/// Length over which displacements fade, m.
+fn fade_m(faces: &[Face], tile_edge_m: f64) -> f64 {
+    let area_m2: f64 = faces.iter().map(|f| f.area_m2).sum();
+    let edge_m = (2.0 * area_m2 / faces.len().max(1) as f64).sqrt();
+    (FADE * tile_edge_m).min(FADE_EDGES * edge_m).max(1e-30)
+}
+
 /// Weight of each edge of a triangle (k to k + 1), and of each of its corners.
-fn stiffness(face: &Face, tile_edge_m: f64) -> ([f64; 3], f64) {
+fn stiffness(face: &Face, fade_m: f64) -> ([f64; 3], f64) {
     let corners = face.corners_m();
     let weight = |k: usize| {
         let far = corners[(k + 2) % 3];
@@ -228,7 +237,7 @@ fn stiffness(face: &Face, tile_edge_m: f64) -> ([f64; 3], f64) {
         let cotangent = if double_area > 0.0 { a.dot(b) / double_area } else { 0.0 };
         0.5 * cotangent.clamp(WEIGHTS[0], WEIGHTS[1])
     };
-    ([0, 1, 2].map(weight), face.area_m2 / (3.0 * (FADE * tile_edge_m) * (FADE * tile_edge_m)))
+    ([0, 1, 2].map(weight), face.area_m2 / (3.0 * fade_m * fade_m))
 }
 
 /// The screened Laplacian over coat vertices, row by row.
@@ -244,7 +253,7 @@ struct Laplacian {
 }
 
 impl Laplacian {
-    fn new(faces: &[Face], tile_edge_m: f64, patches: &Patches) -> Self {
+    fn new(faces: &[Face], fade_m: f64, patches: &Patches) -> Self {
         let count = patches.uv.len();
         let mut rows = vec![0_u32; count + 1];
         patches.triangles.iter().flatten().for_each(|&v| rows[v as usize + 1] += 2);
@@ -256,7 +265,7 @@ impl Laplacian {
         let mut next = rows.clone();
         let mut doubled = vec![(0, 0.0_f32); rows[count] as usize];
         for (face, triangle) in faces.iter().zip(&patches.triangles) {
-            let (weights, mass) = stiffness(face, tile_edge_m);
+            let (weights, mass) = stiffness(face, fade_m);
             for (k, &weight) in weights.iter().enumerate() {
                 let [i, j] = [triangle[k], triangle[(k + 1) % 3]];
                 let weight = weight as f32;
