@@ -58,7 +58,7 @@ impl<'a> Medium<'a> {
         let [below, beyond] = SLABS;
         let mut heights: Vec<f64> = (0..=below).map(|i| i as f64 / below as f64).collect();
         // The tallest hairs' ends fill a thin slab of their own, which no rule may step over.
-        heights.insert(below as usize, 1.0 - BRIM);
+        heights.insert(below, 1.0 - BRIM);
         if top > 1.0 {
             heights.extend((1..=beyond).map(|i| 1.0 + (top - 1.0) * i as f64 / beyond as f64));
         }
