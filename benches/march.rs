@@ -16,7 +16,7 @@ use furrier::fur::undercoat::Undercoat;
 use furrier::math::Vec3;
 use furrier::render::bvh::Bvh;
 use furrier::render::march::volume::{Resolution, Volume};
-use furrier::render::march::{Start, Stepping};
+use furrier::render::march::{Journey, Start, Stepping};
 use furrier::render::picture::{Settings, draw};
 use furrier::render::shell::prism::{Place, Prism};
 use furrier::render::shell::subelement;
@@ -84,10 +84,14 @@ impl Rays {
     }
 
     fn depths(&self) -> Vec<f32> {
-        let depth = |&(origin, direction, start): &(Vec3, Vec3, Start)| {
-            self.volume.depth_along(origin, direction, start, &Stepping::default(), f32::INFINITY)
+        let journey = |&(origin_m, direction, start): &(Vec3, Vec3, Start)| Journey {
+            origin_m,
+            direction,
+            start,
+            far_m: f32::INFINITY,
         };
-        self.rays.iter().map(depth).collect()
+        let journeys: Vec<Journey> = self.rays.iter().map(journey).collect();
+        self.volume.depths_along(&journeys, &Stepping::default(), f32::INFINITY)
     }
 }
 

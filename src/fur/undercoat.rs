@@ -1,10 +1,11 @@
 //! Undercoat as a density over the shell: how many hairs reach a height, how they crowd, how they block a ray
 //! (`docs/steps/march.md`).
 
-use super::groom::clump;
+use super::groom::clump::Nearby;
 use super::groom::fibre::{Fibre, LENGTH_SPREAD};
 use crate::math::Vec3;
-use crate::math::noise::simplex;
+use crate::math::lanes::{F32s, Isa, Vec3s};
+use crate::math::noise::{simplex, simplex_lanes};
 
 /// The pattern that thins and thickens undercoat (Andersen et al. 2016 §3.2): one noise over the skin through all layers,
 /// blurred towards the tips.
@@ -45,6 +46,20 @@ impl Column {
         let pull = (self.strength * t * t.sqrt()).min(0.9);
         let q = 1.0 / (1.0 - pull);
         if q < self.wall { factor * q * q } else { 0.0 }
+    }
+
+    /// [`Self::crowding`] in lanes.
+    #[inline(always)]
+    pub fn crowdings<I: Isa>(&self, t: F32s<I>) -> F32s<I> {
+        let one = F32s::splat(1.0);
+        let mut factor = one;
+        if self.amplitude > 0.0 {
+            let at = Vec3s::splat(self.at) + Vec3s::splat(self.blur) * t;
+            factor = factor + simplex_lanes(at, 0) * self.amplitude;
+        }
+        let pull = (t * t.sqrt() * self.strength).min(F32s::splat(0.9));
+        let q = one / (one - pull);
+        q.lt(F32s::splat(self.wall)).keep(factor * q * q)
     }
 }
 
@@ -121,6 +136,11 @@ impl Undercoat {
     /// what was spread over the clump's cell crowds by q² inside, and nothing is left outside: where the hair that would
     /// stand here had to come from beyond the cell's wall.
     pub fn column(&self, root_m: Vec3, normal: Vec3, clump_factor: f32) -> Column {
+        self.column_near(&mut Nearby::default(), root_m, normal, clump_factor)
+    }
+
+    /// The same, where `nearby` was used for a point close by.
+    pub fn column_near(&self, nearby: &mut Nearby, root_m: Vec3, normal: Vec3, clump_factor: f32) -> Column {
         let amplitude = self.pattern.amplitude;
         let mut column = Column {
             amplitude,
@@ -136,7 +156,7 @@ impl Undercoat {
             column.blur = self.pattern.jitter * Vec3::new(a, b, -a);
         }
         if column.strength > 1e-3 {
-            let centres = clump::to_centres_in_space(root_m, self.clump_spacing_m, 0);
+            let centres = nearby.to_centres(root_m, self.clump_spacing_m, 0);
             let nearer = |a: Vec3, b: Vec3| if b.length_squared() < a.length_squared() { b } else { a };
             let own = centres.into_iter().fold(Vec3::INFINITY, nearer);
             let away = normal * own.dot(normal) - own;
@@ -150,6 +170,15 @@ impl Undercoat {
             }
         }
         column
+    }
+
+    /// [`Self::mean_sine`] in lanes.
+    #[inline(always)]
+    pub fn mean_sines<I: Isa>(&self, sine: F32s<I>) -> F32s<I> {
+        let variance = self.slope * self.slope;
+        let s2 = sine * sine;
+        let c = F32s::splat(0.570_796 * variance) / (s2 * 0.434 + (variance + 1e-12)) + 1.0;
+        ((s2 + c * variance) * (1.0 / (1.0 + variance))).sqrt().min(F32s::splat(1.0))
     }
 
     /// Mean |sin∠(ω, t)| over the hairs' slopes, where the mean hair's is `sine`.

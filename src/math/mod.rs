@@ -2,6 +2,7 @@
 
 pub mod fast;
 pub mod hash;
+pub mod lanes;
 pub mod noise;
 pub mod sampling;
 pub mod sparse;

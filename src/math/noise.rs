@@ -1,6 +1,7 @@
 //! Smooth noise in space.
 
 use super::Vec3;
+use super::lanes::{F32s, Isa, U32s, Vec3s};
 
 /// Simplex noise (Perlin 2001; the kernel (0.6 − r²)⁴ of Gustavson 2005), mean 0, within [−1, 1], features about 1 apart.
 pub fn simplex(p: Vec3, seed: u32) -> f32 {
@@ -40,4 +41,56 @@ fn gradient(corner: Vec3, seed: u32) -> Vec3 {
         1 => Vec3::new(u, 0.0, v),
         _ => Vec3::new(0.0, u, v),
     }
+}
+
+/// [`simplex`] in lanes; the same bits.
+#[inline(always)]
+pub fn simplex_lanes<I: Isa>(p: Vec3s<I>, seed: u32) -> F32s<I> {
+    let skew = (p.x + p.y + p.z) * (1.0 / 3.0);
+    let cell = Vec3s::new((p.x + skew).floor(), (p.y + skew).floor(), (p.z + skew).floor());
+    let unskew = (cell.x + cell.y + cell.z) * (1.0 / 6.0);
+    let x0 = Vec3s::new(p.x - (cell.x - unskew), p.y - (cell.y - unskew), p.z - (cell.z - unskew));
+    let (xy, yz, zx) = (ge(x0.x, x0.y), ge(x0.y, x0.z), ge(x0.z, x0.x));
+    let one = F32s::splat(1.0);
+    let rank = Vec3s::new(xy + (one - zx), (one - xy) + yz, (one - yz) + zx);
+    let two = F32s::splat(2.0);
+    let first = Vec3s::new(ge(rank.x, two), ge(rank.y, two), ge(rank.z, two));
+    let second = Vec3s::new(ge(rank.x, one), ge(rank.y, one), ge(rank.z, one));
+    let mut sum = F32s::splat(0.0);
+    for (corner, unskew) in [(Vec3s::all(0.0), 0.0), (first, 1.0 / 6.0), (second, 1.0 / 3.0), (Vec3s::all(1.0), 0.5)] {
+        let d = (x0 - corner).plus(F32s::splat(unskew));
+        let fall = F32s::splat(0.6) - d.dot(d);
+        let term = fall * fall * fall * fall * d.dot(gradient_lanes(cell + corner, seed));
+        sum = sum + fall.gt(F32s::splat(0.0)).keep(term);
+    }
+    sum * 32.0
+}
+
+#[inline(always)]
+fn ge<I: Isa>(a: F32s<I>, b: F32s<I>) -> F32s<I> {
+    a.lt(b).select(F32s::splat(0.0), F32s::splat(1.0))
+}
+
+#[inline(always)]
+fn gradient_lanes<I: Isa>(corner: Vec3s<I>, seed: u32) -> Vec3s<I> {
+    // Adding 1.5·2²³ leaves a whole number's bits lowest.
+    const ROUND: f32 = 12_582_912.0;
+    let mut h = U32s::splat(seed);
+    for c in [corner.x, corner.y, corner.z] {
+        let whole = (c + ROUND).to_bits().plus_splat(ROUND.to_bits().wrapping_neg());
+        h = h.xor(whole).times(U32s::splat(0x9E37_79B1));
+        h = h.xor(h.shr::<15>());
+    }
+    h = h.times(U32s::splat(0x85EB_CA77));
+    // Bits 31 and 30 become signs.
+    let u = h.and(0x8000_0000).or(1.0_f32.to_bits()).to_f32_bits();
+    let v = h.shl::<1>().and(0x8000_0000).or(1.0_f32.to_bits()).to_f32_bits();
+    // (h >> 8) mod 3, exact in numbers of 24 bits: a quotient that rounding left one too large gives −1.
+    let x = h.shr::<8>().signed_to_f32();
+    let rest = x - (x * (1.0 / 3.0)).floor() * 3.0;
+    let (half, three_halves) = (F32s::splat(0.5), F32s::splat(1.5));
+    let rest = rest.lt(F32s::splat(-0.5)).select(rest + 3.0, rest);
+    let rest = rest.lt(F32s::splat(2.5)).select(rest, rest - 3.0);
+    let (is_0, is_2) = (rest.lt(half), rest.gt(three_halves));
+    Vec3s::new((!is_2).keep(u), is_0.select(v, is_2.keep(u)), (!is_0).keep(v))
 }

@@ -20,6 +20,7 @@ pub mod resolve;
 pub mod shell;
 pub mod skin;
 pub mod strands;
+pub mod table;
 pub mod view;
 
 use crate::data::mesh::Mesh;

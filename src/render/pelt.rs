@@ -5,6 +5,7 @@ use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;
 use crate::fur::groom::fibre::Fibre;
 use crate::math::Vec3;
+use crate::math::lanes::{F32s, Isa, Vec3s};
 use crate::shade::light::Directional;
 use crate::shade::lobes::LobeParameters;
 
@@ -115,6 +116,27 @@ pub fn slant_depth(above: f32, to_light: Vec3, normal: Vec3, lean: Vec3) -> f32 
 /// Greatest optical depth of a flat layer: hair deeper than this is hidden as well as it is dark; where it is seen all the
 /// same, at a border or in a parting, light finds the way that the eye found.
 pub const DEEPEST: f32 = 2.5;
+
+/// [`slant_depth`] in lanes.
+#[inline(always)]
+pub fn slant_depths<I: Isa>(above: F32s<I>, to_light: Vec3s<I>, normal: Vec3s<I>, lean: Vec3s<I>) -> F32s<I> {
+    let along = to_light.dot(lean);
+    let sine = (F32s::splat(1.0) - along * along).max(F32s::splat(0.0)).sqrt();
+    (above * sine / to_light.dot(normal).max(F32s::splat(HORIZON))).min(F32s::splat(DEEPEST))
+}
+
+/// [`terminator`] in lanes.
+#[inline(always)]
+pub fn terminators<I: Isa>(to_light: Vec3s<I>, normal: Vec3s<I>) -> F32s<I> {
+    let x = ((to_light.dot(normal) + 0.35) * (1.0 / 0.35)).within(0.0, 1.0);
+    x * x * (F32s::splat(3.0) - x * 2.0)
+}
+
+/// [`sky_depth`] in lanes.
+#[inline(always)]
+pub fn sky_depths<I: Isa>(above: F32s<I>) -> F32s<I> {
+    (above * (1.5 * std::f32::consts::FRAC_PI_4)).min(F32s::splat(DEEPEST))
+}
 
 /// Least cosine between normal and light for which hair shadows as a flat layer.
 const HORIZON: f32 = 0.08;

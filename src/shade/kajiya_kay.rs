@@ -31,13 +31,25 @@ impl<R: Real> KajiyaKay<R> {
         [self.diffuse * R::of(1.0 / (PI * PI)), self.specular * self.specular_scale, self.exponent]
     }
 
+    /// The same in other numbers.
+    #[inline(always)]
+    pub fn map<S>(&self, of: impl Fn(R) -> S) -> KajiyaKay<S> {
+        KajiyaKay {
+            diffuse: of(self.diffuse),
+            specular: of(self.specular),
+            exponent: of(self.exponent),
+            specular_scale: of(self.specular_scale),
+        }
+    }
+
     /// S per channel of the hair's colour, 1/sr: (factor of the colour, untinted rest).
     ///
     /// Diffuse is 1/π², since ∫ cos θ dω = π² over the sphere. The highlight cos^p(θ_i + θ_o) holds its albedo at
     /// θ_o = 0 and less elsewhere, as the cosine and the poles take their part.
+    #[inline(always)]
     pub fn scatter(&self, angles: Angles<R>) -> (R, R) {
         let mirror = angles.cos_in() * angles.cos_out() - angles.sin_in * angles.sin_out;
-        let highlight = if mirror > R::of(0.0) { mirror.powf(self.exponent) * self.specular_scale } else { R::of(0.0) };
+        let highlight = mirror.max(R::of(0.0)).min(R::of(1.0)).powf(self.exponent) * self.specular_scale;
         (self.diffuse * R::of(1.0 / (PI * PI)), self.specular * highlight)
     }
 }

@@ -132,7 +132,29 @@ impl<R: Real> Lobes<R> {
         })
     }
 
+    /// The same in other numbers.
+    #[inline(always)]
+    pub fn map<S>(&self, of: impl Fn(R) -> S) -> Lobes<S> {
+        let prepared = |lobe: &Prepared<R>| Prepared {
+            albedo: of(lobe.albedo),
+            shift_rad: of(lobe.shift_rad),
+            scale: of(lobe.scale),
+        };
+        Lobes {
+            lobes: [prepared(&self.lobes[0]), prepared(&self.lobes[1]), prepared(&self.lobes[2])],
+            tt_azimuth_scale: of(self.tt_azimuth_scale),
+            glint: of(self.glint),
+            glint_angle_rad: of(self.glint_angle_rad),
+            glint_scale: of(self.glint_scale),
+            diffuse: of(self.diffuse),
+            surround_norm: of(self.surround_norm),
+            glint_norm: of(self.glint_norm),
+            tt_norm: of(self.tt_norm),
+        }
+    }
+
     /// S for the given directions; symmetric in light and eye.
+    #[inline(always)]
     pub fn scatter(&self, angles: Angles<R>) -> Scattered<R> {
         let one = R::of(1.0);
         let half = R::of(0.5);

@@ -12,6 +12,7 @@ mod real;
 
 pub use real::Real;
 
+use crate::math::lanes::{F32s, Isa, Vec3s};
 use crate::math::{DVec3, Vec3};
 
 /// Where light comes from and goes to, relative to a hair. Both directions point away from the hair.
@@ -27,22 +28,25 @@ pub struct Angles<R> {
 
 impl<R: Real> Angles<R> {
     /// From the three cosines between unit vectors: hair and light, hair and eye, light and eye.
+    #[inline(always)]
     pub fn new(hair_light: R, hair_eye: R, light_eye: R) -> Self {
         let one = R::of(1.0);
         let limit = |x: R| x.max(R::of(-1.0)).min(one);
         let (sin_in, sin_out) = (limit(hair_light), limit(hair_eye));
         let across = ((one - sin_in * sin_in) * (one - sin_out * sin_out)).max(R::of(0.0)).sqrt();
         let cos_azimuth =
-            if across > R::of(1e-6) { limit((light_eye - sin_in * sin_out) / across) } else { R::of(0.0) };
+            across.above(R::of(1e-6), limit((light_eye - sin_in * sin_out) / across.max(R::of(1e-6))), R::of(0.0));
         Self { sin_in, sin_out, cos_azimuth }
     }
 
     /// cos θ_i, never negative.
+    #[inline(always)]
     pub fn cos_in(self) -> R {
         (R::of(1.0) - self.sin_in * self.sin_in).max(R::of(0.0)).sqrt()
     }
 
     /// cos θ_o, never negative.
+    #[inline(always)]
     pub fn cos_out(self) -> R {
         (R::of(1.0) - self.sin_out * self.sin_out).max(R::of(0.0)).sqrt()
     }
@@ -51,6 +55,14 @@ impl<R: Real> Angles<R> {
 impl Angles<f32> {
     /// From unit vectors: the hair's direction, towards the light, towards the eye.
     pub fn of_vectors(hair: Vec3, to_light: Vec3, to_eye: Vec3) -> Self {
+        Self::new(hair.dot(to_light), hair.dot(to_eye), to_light.dot(to_eye))
+    }
+}
+
+impl<I: Isa> Angles<F32s<I>> {
+    /// From unit vectors: the hair's direction, towards the light, towards the eye.
+    #[inline(always)]
+    pub fn of_lanes(hair: Vec3s<I>, to_light: Vec3s<I>, to_eye: Vec3s<I>) -> Self {
         Self::new(hair.dot(to_light), hair.dot(to_eye), to_light.dot(to_eye))
     }
 }
@@ -66,6 +78,7 @@ impl Angles<f64> {
 ///
 /// Light that one hair scatters reaches the next, so bright fur is darkened less by itself than the extinction says. In
 /// the diffusion limit the effective extinction is √(1 − albedo) of the real one (Ishimaru 1978, isotropic scattering).
+#[inline(always)]
 pub fn shadow_power<R: Real>(albedo: R) -> R {
     (R::of(1.0) - albedo).max(R::of(0.0)).min(R::of(1.0)).sqrt()
 }

@@ -1,16 +1,12 @@
 //! The numbers that scattering formulas are written in.
 
+use crate::math::lanes::{F32s, Isa};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// f32 where pictures are made, f64 where their error is measured. Functions come from `libm`, the same on every platform.
+/// f32 and lanes of them where pictures are made, f64 where their error is measured. Functions come from `libm` or are
+/// polynomials, the same on every platform.
 pub trait Real:
-    Copy
-    + PartialOrd
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// The nearest value to `x`.
     fn of(x: f64) -> Self;
@@ -27,14 +23,19 @@ pub trait Real:
     /// Cosine of self rad.
     fn cos(self) -> Self;
 
+    /// `yes` where self > limit, else `no`.
+    fn above(self, limit: Self, yes: Self, no: Self) -> Self;
+
     /// The larger one.
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
-        if self > other { self } else { other }
+        self.above(other, self, other)
     }
 
     /// The smaller one.
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
-        if self < other { self } else { other }
+        self.above(other, other, self)
     }
 }
 
@@ -62,9 +63,48 @@ macro_rules! real {
             fn cos(self) -> Self {
                 $cos(self)
             }
+            fn above(self, limit: Self, yes: Self, no: Self) -> Self {
+                if self > limit { yes } else { no }
+            }
         }
     };
 }
 
 real!(f32, libm::expf, libm::powf, libm::asinf, libm::acosf, libm::cosf);
 real!(f64, libm::exp, libm::pow, libm::asin, libm::acos, libm::cos);
+
+/// Exponents at most 0, powers of numbers in [0, 1] and angles in [−π, π] are all that scattering asks for.
+impl<I: Isa> Real for F32s<I> {
+    #[inline(always)]
+    fn of(x: f64) -> Self {
+        Self::splat(x as f32)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        self.exp_negative()
+    }
+    #[inline(always)]
+    fn powf(self, power: Self) -> Self {
+        self.pow_unit(power)
+    }
+    #[inline(always)]
+    fn asin(self) -> Self {
+        self.asin()
+    }
+    #[inline(always)]
+    fn acos(self) -> Self {
+        self.acos()
+    }
+    #[inline(always)]
+    fn cos(self) -> Self {
+        self.cos()
+    }
+    #[inline(always)]
+    fn above(self, limit: Self, yes: Self, no: Self) -> Self {
+        self.gt(limit).select(yes, no)
+    }
+}

@@ -30,11 +30,35 @@ pub fn to_centre_in_space(root_m: Vec3, spacing_m: f32, seed: u64) -> Vec3 {
 
 /// From `root_m` to the clump centres of its cell and the cells around it, m.
 pub fn to_centres_in_space(root_m: Vec3, spacing_m: f32, seed: u64) -> [Vec3; 27] {
-    let home = (root_m / spacing_m).floor();
-    std::array::from_fn(|i| {
-        let cell = home + Vec3::new((i % 3) as f32 - 1.0, (i / 3 % 3) as f32 - 1.0, (i / 9) as f32 - 1.0);
-        let key = cell.to_array().iter().fold(seed, |key, &c| combine(key, c as i64 as u64));
-        let offset = Vec3::new(unit_f32(key), unit_f32(combine(key, 1)), unit_f32(combine(key, 2)));
-        (cell + offset) * spacing_m - root_m
-    })
+    Nearby::default().to_centres(root_m, spacing_m, seed)
+}
+
+/// The clump centres around a cell, kept for the next point that lies in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Nearby {
+    home: Vec3,
+    centres_m: [Vec3; 27],
+}
+
+impl Default for Nearby {
+    fn default() -> Self {
+        Self { home: Vec3::NAN, centres_m: [Vec3::ZERO; 27] }
+    }
+}
+
+impl Nearby {
+    /// As [`to_centres_in_space`]; spacing and seed are those of the calls before.
+    pub fn to_centres(&mut self, root_m: Vec3, spacing_m: f32, seed: u64) -> [Vec3; 27] {
+        let home = (root_m / spacing_m).floor();
+        if home != self.home {
+            self.home = home;
+            self.centres_m = std::array::from_fn(|i| {
+                let cell = home + Vec3::new((i % 3) as f32 - 1.0, (i / 3 % 3) as f32 - 1.0, (i / 9) as f32 - 1.0);
+                let key = cell.to_array().iter().fold(seed, |key, &c| combine(key, c as i64 as u64));
+                let offset = Vec3::new(unit_f32(key), unit_f32(combine(key, 1)), unit_f32(combine(key, 2)));
+                (cell + offset) * spacing_m
+            });
+        }
+        self.centres_m.map(|centre| centre - root_m)
+    }
 }

@@ -1,15 +1,20 @@
 //! Light in undercoat: the key light's shadow, stored by sub-element, and what a step sends to the eye.
 
+use super::prisms::Prisms;
 use super::volume::Volume;
-use super::{Start, Step, Stepping};
+use super::{Journey, Start, Stepping, Steps};
 use crate::math::Vec3;
-use crate::math::fast::exp_negative;
-use crate::render::pelt::{Lighting, Pelt, sky_depth, slant_depth, terminator};
+use crate::math::lanes::{F32s, Isa, Vec3s};
+use crate::render::pelt::{Lighting, Pelt, sky_depths, slant_depths, terminators};
 use crate::render::shell::block::Block;
 use crate::render::shell::prism::Place;
+use crate::render::shell::subelement;
 use crate::shade::kajiya_kay::KajiyaKay;
+use crate::shade::light::Directional;
 use crate::shade::{Angles, shadow_power};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
 /// Optical depth beyond which no light is left.
 const DARK: f32 = 6.0;
@@ -22,12 +27,15 @@ const TOWARDS_LIGHT: Stepping = Stepping { depth: 1.0, layers: 4.0 };
 pub struct Shadows {
     to_light: Vec3,
     blocks: Vec<OnceLock<Block>>,
+    /// Time spent filling, summed over threads, ns.
+    pub(super) spent_ns: AtomicU64,
 }
 
 impl Shadows {
     /// None filled yet.
     pub fn new(to_light: Vec3, triangles: usize) -> Self {
-        Self { to_light, blocks: std::iter::repeat_with(OnceLock::new).take(triangles).collect() }
+        let blocks = std::iter::repeat_with(OnceLock::new).take(triangles).collect();
+        Self { to_light, blocks, spent_ns: AtomicU64::new(0) }
     }
 
     /// Bytes filled.
@@ -35,21 +43,32 @@ impl Shadows {
         self.blocks.iter().filter_map(OnceLock::get).map(Block::bytes).sum()
     }
 
-    /// Optical depth towards the light at a place of `volume`'s shell.
-    pub fn depth(&self, volume: &Volume<'_>, triangle: u32, b: Vec3, t: f32) -> f32 {
-        self.blocks[triangle as usize].get_or_init(|| self.fill(volume, triangle)).between_layers(b, t)
+    /// Optical depths towards the light in the sub-elements of a prism of `volume`.
+    #[inline]
+    pub fn block(&self, volume: &Volume<'_>, triangle: u32) -> &Block {
+        let cell = &self.blocks[triangle as usize];
+        if let Some(block) = cell.get() {
+            return block;
+        }
+        cell.get_or_init(|| {
+            let start = Instant::now();
+            let block = self.fill(volume, triangle);
+            self.spent_ns.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
+            block
+        })
     }
 
     fn fill(&self, volume: &Volume<'_>, triangle: u32) -> Block {
         let prism = volume.shell().prism(triangle);
-        Block::fill(volume.shadow_subdivisions(triangle), volume.layers(), |b| {
-            move |t| {
-                let place = Place { b: [b.y, b.z], t };
-                let origin_m = prism.jacobian(&place).at_m;
-                let start = Start { at_m: 0.0, triangle, place };
-                volume.depth_along(origin_m, self.to_light, start, &TOWARDS_LIGHT, DARK)
-            }
-        })
+        let (d, layers) = (volume.shadow_subdivisions(triangle), volume.layers());
+        let journey = |i: u32| {
+            let b = subelement::centre(i & ((1 << (2 * d)) - 1), d);
+            let place = Place { b: [b.y, b.z], t: ((i >> (2 * d)) as f32 + 0.5) / layers as f32 };
+            let start = Start { at_m: 0.0, triangle, place };
+            Journey { origin_m: prism.jacobian(&place).at_m, direction: self.to_light, start, far_m: f32::INFINITY }
+        };
+        let journeys: Vec<Journey> = (0..layers << (2 * d)).map(journey).collect();
+        Block::new(d, layers, &volume.depths_along(&journeys, &TOWARDS_LIGHT, DARK))
     }
 }
 
@@ -74,40 +93,67 @@ impl<'a> UndercoatShader<'a> {
         }
     }
 
-    /// Colour of the hair at a step and the radiance it sends along −`direction`.
-    pub fn look(&self, volume: &Volume<'_>, step: &Step, direction: Vec3) -> (Vec3, Vec3) {
-        let (shell, triangle) = (volume.shell(), step.triangle);
-        let (b, t) = (step.place.barycentric(), step.place.t);
-        let ramp = if t < 0.5 {
-            self.ramp[0].lerp(self.ramp[1], 2.0 * t)
-        } else {
-            self.ramp[1].lerp(self.ramp[2], 2.0 * t - 1.0)
-        };
-        let albedo = shell.vector(&shell.fields.tint, triangle, b) * ramp;
-        let power = (albedo * self.albedo_share).map(shadow_power);
-        let through = |depth: f32| (power * -depth).map(exp_negative);
-        let [own, above] = volume.above(triangle, b, t);
-        let normal = volume.normal(triangle, b);
-        let mut radiance = self.lighting.ambient * albedo * self.albedo_share * through(sky_depth(above));
-
-        let key = &self.lighting.key;
-        let open = terminator(key.to_light, normal);
-        if open > 0.0 {
-            let depth = volume.shadows.depth(volume, triangle, b, t)
-                + slant_depth(above - own, key.to_light, normal, step.hair);
-            let angles = Angles::of_vectors(step.hair, key.to_light, -direction);
-            let (tinted, plain) = self.scatter.scatter(angles);
-            radiance += key.irradiance * (albedo * tinted + plain) * through(depth) * (angles.cos_in() * open);
-        }
+    /// Colours of the hair at steps and the radiance they send back along the rays. `shadow` holds the key light's
+    /// optical depth.
+    #[inline(always)]
+    pub fn look<I: Isa>(
+        &self,
+        volume: &Volume<'_>,
+        prisms: &Prisms,
+        steps: &Steps<I>,
+        shadow: F32s<I>,
+    ) -> (Vec3s<I>, Vec3s<I>) {
+        let albedo = prisms.tint(steps.b).times(self.ramp(steps.t));
+        let share = albedo * F32s::splat(self.albedo_share);
+        let power = Vec3s::new(shadow_power(share.x), shadow_power(share.y), shadow_power(share.z));
+        let [own, above] = volume.above(prisms, steps);
+        let normal = prisms.normal(steps.b);
+        let mut radiance = share.times(Vec3s::splat(self.lighting.ambient)).times(through(power, sky_depths(above)));
+        let spot = Spot { albedo, power, normal, hair: steps.hair, to_eye: steps.direction * F32s::splat(-1.0) };
+        radiance = radiance + self.lit(&spot, &self.lighting.key, above - own, shadow);
         if self.lighting.fill_on_undercoat {
             for light in &self.lighting.fill {
-                let open = terminator(light.to_light, normal);
-                let angles = Angles::of_vectors(step.hair, light.to_light, -direction);
-                let (tinted, plain) = self.scatter.scatter(angles);
-                let depth = slant_depth(above, light.to_light, normal, step.hair);
-                radiance += light.irradiance * (albedo * tinted + plain) * through(depth) * (angles.cos_in() * open);
+                radiance = radiance + self.lit(&spot, light, above, F32s::splat(0.0));
             }
         }
         (albedo, radiance)
     }
+
+    /// What a light gives, shadowed by a layer of hair area `above` and a known depth.
+    #[inline(always)]
+    fn lit<I: Isa>(&self, spot: &Spot<I>, light: &Directional, above: F32s<I>, depth: F32s<I>) -> Vec3s<I> {
+        let to_light = Vec3s::splat(light.to_light);
+        let open = terminators(to_light, spot.normal);
+        let angles = Angles::of_lanes(spot.hair, to_light, spot.to_eye);
+        let (tinted, plain) = self.scatter.map(F32s::splat).scatter(angles);
+        let depth = depth + slant_depths(above, to_light, spot.normal, spot.hair);
+        let irradiance = Vec3s::splat(light.irradiance) * (angles.cos_in() * open);
+        (spot.albedo * tinted).plus(plain).times(through(spot.power, depth)).times(irradiance)
+    }
+
+    /// Colour factors at heights.
+    #[inline(always)]
+    fn ramp<I: Isa>(&self, t: F32s<I>) -> Vec3s<I> {
+        let [root, middle, tip] = [Vec3s::splat(self.ramp[0]), Vec3s::splat(self.ramp[1]), Vec3s::splat(self.ramp[2])];
+        let (one, twice) = (F32s::splat(1.0), t * 2.0);
+        let lower = root + (middle - root) * twice;
+        let upper = middle + (tip - middle) * (twice - one);
+        lower.select(twice.lt(one), upper)
+    }
+}
+
+/// Undercoat to be lit.
+struct Spot<I: Isa> {
+    albedo: Vec3s<I>,
+    power: Vec3s<I>,
+    normal: Vec3s<I>,
+    hair: Vec3s<I>,
+    to_eye: Vec3s<I>,
+}
+
+/// Transmittance per channel.
+#[inline(always)]
+fn through<I: Isa>(power: Vec3s<I>, depth: F32s<I>) -> Vec3s<I> {
+    let depth = -depth;
+    Vec3s::new((power.x * depth).exp_negative(), (power.y * depth).exp_negative(), (power.z * depth).exp_negative())
 }

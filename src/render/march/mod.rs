@@ -1,11 +1,15 @@
-//! Rays through the shell, from prism to prism (Andersen et al. 2016 §3.2, `docs/steps/march.md`).
+//! Rays through the shell, from prism to prism, several side by side (Andersen et al. 2016 §3.2, `docs/steps/march.md`).
 
 pub mod enter;
 pub mod light;
+pub mod prisms;
 pub mod volume;
 
+use super::shell::block::Blocks;
 use super::shell::prism::Place;
 use crate::math::Vec3;
+use crate::math::lanes::{F32s, Isa, MOST, Mask, Row, Vec3Row, Vec3s};
+use prisms::{Jacobians, Places, Prisms};
 use volume::Volume;
 
 /// How finely rays are followed.
@@ -34,119 +38,263 @@ pub struct Start {
     pub place: Place,
 }
 
-/// One step through undercoat, as its middle found it.
+/// A ray to be followed until it leaves the shell, meets the skin, or passes `far_m`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Journey {
+    /// Where the ray comes from, m.
+    pub origin_m: Vec3,
+    /// Unit vector.
+    pub direction: Vec3,
+    /// Where it enters.
+    pub start: Start,
+    /// Where it ends at the latest, m from the origin.
+    pub far_m: f32,
+}
+
+/// A step through undercoat in each lane, as its middle found it.
 #[derive(Clone, Copy, Debug)]
-pub struct Step {
-    /// Distance where it begins, m.
-    pub from_m: f32,
-    /// Its length, m.
-    pub length_m: f32,
-    /// Prism.
-    pub triangle: u32,
-    /// Place of its middle.
-    pub place: Place,
-    /// Mean direction of the hair, unit.
-    pub hair: Vec3,
-    /// Optical depth.
-    pub depth: f32,
+pub struct Steps<I: Isa> {
+    /// Distances where they begin, m.
+    pub from_m: F32s<I>,
+    /// Their lengths, m.
+    pub length_m: F32s<I>,
+    /// Barycentric coordinates of their middles.
+    pub b: Vec3s<I>,
+    /// Heights of their middles.
+    pub t: F32s<I>,
+    /// Mean directions of the hair, unit.
+    pub hair: Vec3s<I>,
+    /// Directions of the rays, unit.
+    pub direction: Vec3s<I>,
+    /// Optical depths.
+    pub depth: F32s<I>,
+}
+
+/// What is done with rays. Lanes work on their own: which ray is in which lane changes nothing.
+///
+/// Implementations are `#[inline(always)]`, so that they are built for the vectors at hand.
+pub trait Traveller<I: Isa> {
+    /// The next ray, which starts in `lane`; none when all are on their way.
+    fn next(&mut self, lane: usize) -> Option<Journey>;
+    /// The ray in `lane` is now in prism `triangle`.
+    fn enter(&mut self, _lane: usize, _triangle: u32) {}
+    /// The rays in the lanes of `on` have made a step; says which may go on.
+    fn visit(&mut self, prisms: &Prisms, steps: &Steps<I>, on: Mask<I>) -> Mask<I>;
+    /// The ray in `lane` has come to its end.
+    fn end(&mut self, lane: usize);
 }
 
 /// No march takes more steps: some thousand prisms in a row.
-const MOST_STEPS: usize = 8192;
+const MOST_STEPS: u32 = 8192;
 
 /// How close to a prism's side counts as on it, in barycentric coordinates and shares of the height.
 const ON_SIDE: f32 = 1e-4;
 
-/// Follows a ray until it leaves the shell, meets the skin, passes `far_m`, or `visit` returns false.
+/// Follows all rays of `traveller`.
 ///
 /// Every step lies in one prism. Coordinates are carried along by their gradients and put right by one Newton step; a step
 /// ends on the side it would pass, and the march goes on in the neighbour there.
-pub fn march(
-    volume: &Volume<'_>,
-    origin_m: Vec3,
-    direction: Vec3,
-    start: Start,
-    far_m: f32,
-    stepping: &Stepping,
-    mut visit: impl FnMut(&Step) -> bool,
+#[inline(always)]
+pub fn march<I: Isa, T: Traveller<I>>(volume: &Volume<'_>, stepping: &Stepping, traveller: &mut T) {
+    let mut flight = Flight {
+        on: 0,
+        origin_m: Vec3Row::default(),
+        direction: Vec3Row::default(),
+        far_m: Row::default(),
+        at_m: Row::default(),
+        b: [Row::default(); 2],
+        t: Row::default(),
+        expected_m: Row::default(),
+        steps: [0; MOST],
+        triangles: [0; MOST],
+        prisms: Prisms::default(),
+        blocks: Blocks::new(volume.layers()),
+    };
+    let mut waiting = true;
+    loop {
+        for lane in 0..I::LANES {
+            if waiting && flight.on >> lane & 1 == 0 {
+                match traveller.next(lane) {
+                    Some(journey) => board(&mut flight, volume, traveller, lane, &journey),
+                    None => waiting = false,
+                }
+            }
+        }
+        if flight.on == 0 {
+            return;
+        }
+        advance(&mut flight, volume, stepping, traveller);
+    }
+}
+
+/// The marches under way.
+struct Flight<'v> {
+    /// A bit per lane.
+    on: u32,
+    origin_m: Vec3Row,
+    direction: Vec3Row,
+    far_m: Row,
+    at_m: Row,
+    b: [Row; 2],
+    t: Row,
+    /// Length of a step that has the wanted optical depth, by the last step's density, m.
+    expected_m: Row,
+    steps: [u32; MOST],
+    triangles: [u32; MOST],
+    prisms: Prisms,
+    blocks: Blocks<'v>,
+}
+
+impl<'v> Flight<'v> {
+    #[inline(always)]
+    fn enter(&mut self, volume: &'v Volume<'_>, lane: usize, triangle: u32, place: Place) {
+        self.triangles[lane] = triangle;
+        self.prisms.set(lane, volume.corners(triangle), volume.twice_area_m2(triangle));
+        self.blocks.set(lane, volume.block(triangle));
+        self.b[0].0[lane] = place.b[0];
+        self.b[1].0[lane] = place.b[1];
+        self.t.0[lane] = place.t;
+    }
+
+    fn place(&self, lane: usize) -> Place {
+        Place { b: [self.b[0].0[lane], self.b[1].0[lane]], t: self.t.0[lane] }
+    }
+}
+
+#[inline(always)]
+fn board<'v, I: Isa, T: Traveller<I>>(
+    flight: &mut Flight<'v>,
+    volume: &'v Volume<'_>,
+    traveller: &mut T,
+    lane: usize,
+    journey: &Journey,
 ) {
-    let shell = volume.shell();
-    let Start { mut at_m, mut triangle, mut place } = start;
-    let mut prism = shell.prism(triangle);
-    let mut expected = f32::INFINITY;
-    for _ in 0..MOST_STEPS {
-        let j = prism.jacobian(&place);
-        // Put right what the last step's straight line left over.
-        let place_here = place.moved(j.rates(origin_m + direction * at_m - j.at_m), 1.0);
-        let rates = j.rates(direction);
-        if !rates.is_finite() || rates == Vec3::ZERO {
-            return;
-        }
-        place = place_here;
-        let thickness_m = j.up_m.length() / volume.layers() as f32;
-        let least_m = 1e-3 * thickness_m;
-        let side = next_side(&place, rates);
-        let longest_m = (stepping.layers * thickness_m).min(expected).max(least_m);
-        let mut length_m = longest_m.min(side.after_m.max(0.0)).min(far_m - at_m);
-        if length_m > 0.0 {
-            let mut step = volume.step(&j, triangle, &place, rates, at_m, length_m, direction);
-            if step.depth > 2.0 * stepping.depth && length_m > least_m {
-                length_m = (length_m * stepping.depth / step.depth).max(least_m);
-                step = volume.step(&j, triangle, &place, rates, at_m, length_m, direction);
-            }
-            expected = stepping.depth * length_m / step.depth.max(1e-9);
-            if step.depth > 0.0 && !visit(&step) {
-                return;
-            }
-            at_m += length_m;
-            place = place.moved(rates, length_m);
-        }
-        if at_m >= far_m {
-            return;
-        }
-        if length_m < side.after_m {
+    flight.on |= 1 << lane;
+    flight.origin_m.set(lane, journey.origin_m);
+    flight.direction.set(lane, journey.direction);
+    flight.far_m.0[lane] = journey.far_m;
+    flight.at_m.0[lane] = journey.start.at_m;
+    flight.expected_m.0[lane] = f32::INFINITY;
+    flight.steps[lane] = 0;
+    flight.enter(volume, lane, journey.start.triangle, journey.start.place);
+    traveller.enter(lane, journey.start.triangle);
+}
+
+/// One step of all marches.
+#[inline(always)]
+fn advance<'v, I: Isa, T: Traveller<I>>(
+    flight: &mut Flight<'v>,
+    volume: &'v Volume<'_>,
+    stepping: &Stepping,
+    traveller: &mut T,
+) {
+    let zero = F32s::<I>::splat(0.0);
+    let on = Mask::from_bits(flight.on);
+    let (direction, far_m) = (Vec3s::of(&flight.direction), F32s::of(&flight.far_m));
+    let at_m = F32s::of(&flight.at_m);
+    let places = Places { b: [F32s::of(&flight.b[0]), F32s::of(&flight.b[1])], t: F32s::of(&flight.t) };
+    let j = flight.prisms.jacobians(&places);
+    // Put right what the last step's straight line left over.
+    let left_over = Vec3s::of(&flight.origin_m) + direction * at_m - j.at_m;
+    let places = places.moved(j.rates(left_over), F32s::splat(1.0));
+    let rates = j.rates(direction);
+    let fastest = rates.x.abs() + rates.y.abs() + rates.z.abs();
+    let moving = on & fastest.gt(zero) & fastest.lt(F32s::splat(f32::INFINITY));
+
+    let layer_m = j.up_m.length() * (1.0 / volume.layers() as f32);
+    let least_m = layer_m * 1e-3;
+    let (side, side_m) = next_side(&places, rates);
+    let longest_m = (layer_m * stepping.layers).min(F32s::of(&flight.expected_m)).max(least_m);
+    let mut length_m = longest_m.min(side_m.max(zero)).min(far_m - at_m);
+    let walking = moving & length_m.gt(zero);
+
+    let from = From { j, places, rates, at_m, direction };
+    let mut steps = volume.steps(&flight.prisms, &flight.blocks, &from, length_m, walking);
+    let too_deep = walking & steps.depth.gt(F32s::splat(2.0 * stepping.depth)) & length_m.gt(least_m);
+    if too_deep.bits() != 0 {
+        let shorter_m = (length_m * stepping.depth / steps.depth).max(least_m);
+        length_m = too_deep.select(shorter_m, length_m);
+        steps = volume.steps(&flight.prisms, &flight.blocks, &from, length_m, walking);
+    }
+    let expected_m = length_m * stepping.depth / steps.depth.max(F32s::splat(1e-9));
+    flight.expected_m = walking.select(expected_m, F32s::of(&flight.expected_m)).row();
+    let seen = walking & steps.depth.gt(zero);
+    let going = if seen.bits() == 0 { !seen } else { traveller.visit(&flight.prisms, &steps, seen) | !seen };
+    let walked_m = walking.keep(length_m);
+    let at_m = at_m + walked_m;
+    let places = places.moved(rates, walked_m);
+
+    let alive = moving & going & at_m.lt(far_m);
+    let crossing = (alive & !length_m.lt(side_m)).bits();
+    let over = flight.on & !alive.bits();
+    flight.at_m = at_m.row();
+    flight.b = [places.b[0].row(), places.b[1].row()];
+    flight.t = places.t.row();
+    let (side, least_m) = (side.row(), least_m.row());
+    for lane in 0..I::LANES {
+        if flight.on >> lane & 1 == 0 {
             continue;
         }
-        match side.which {
-            Side::Top | Side::Skin => return,
-            Side::Edge(corner) => {
-                let Some(beyond) = shell.neighbours.beyond(triangle, corner) else { return };
-                place = across(&place, corner, usize::from(beyond.corner));
-                triangle = beyond.triangle;
-                prism = shell.prism(triangle);
-                // The next prism is entered a hair's breadth inside, so that rounding does not send the march back.
-                at_m += ON_SIDE * least_m;
+        flight.steps[lane] += 1;
+        let mut ended = over >> lane & 1 != 0 || flight.steps[lane] == MOST_STEPS;
+        if crossing >> lane & 1 != 0 {
+            match beyond(volume, flight, lane, side.0[lane]) {
+                Some((triangle, place)) => {
+                    flight.enter(volume, lane, triangle, place);
+                    traveller.enter(lane, triangle);
+                    // The next prism is entered a hair's breadth inside, so that rounding does not send the march back.
+                    flight.at_m.0[lane] += ON_SIDE * least_m.0[lane];
+                }
+                None => ended = true,
             }
+        }
+        if ended {
+            flight.on &= !(1 << lane);
+            traveller.end(lane);
         }
     }
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum Side {
-    Top,
-    Skin,
-    Edge(usize),
+/// Where steps begin.
+struct From<I: Isa> {
+    j: Jacobians<I>,
+    places: Places<I>,
+    rates: Vec3s<I>,
+    at_m: F32s<I>,
+    direction: Vec3s<I>,
 }
 
-struct Next {
-    which: Side,
-    after_m: f32,
+/// The sides that straight lines in coordinates pass first, and after what distance: the edges opposite to corners 0, 1
+/// and 2, then top and skin.
+#[inline(always)]
+fn next_side<I: Isa>(places: &Places<I>, rates: Vec3s<I>) -> (F32s<I>, F32s<I>) {
+    let one = F32s::splat(1.0);
+    let mut side = F32s::splat(3.0);
+    let mut after = F32s::splat(f32::INFINITY);
+    let left = [
+        (one - places.b[0] - places.b[1], -rates.x - rates.y),
+        (places.b[0], rates.x),
+        (places.b[1], rates.y),
+        (one - places.t, -rates.z),
+        (places.t, rates.z),
+    ];
+    for (i, (left, rate)) in left.into_iter().enumerate() {
+        let distance = left / -rate;
+        let first = rate.lt(F32s::splat(0.0)) & distance.lt(after);
+        side = first.select(F32s::splat(i as f32), side);
+        after = first.select(distance, after);
+    }
+    (side, after)
 }
 
-/// The side that a straight line in coordinates passes first.
-fn next_side(place: &Place, rates: Vec3) -> Next {
-    let mut next = Next { which: Side::Top, after_m: f32::INFINITY };
-    let mut offer = |which: Side, left: f32, rate: f32| {
-        if rate < 0.0 && left / -rate < next.after_m {
-            next = Next { which, after_m: left / -rate };
-        }
-    };
-    offer(Side::Edge(0), 1.0 - place.b[0] - place.b[1], -rates.x - rates.y);
-    offer(Side::Edge(1), place.b[0], rates.x);
-    offer(Side::Edge(2), place.b[1], rates.y);
-    offer(Side::Top, 1.0 - place.t, -rates.z);
-    offer(Side::Skin, place.t, rates.z);
-    next
+/// The prism and place beyond a side; none at the top, the skin and open borders.
+fn beyond(volume: &Volume<'_>, flight: &Flight<'_>, lane: usize, side: f32) -> Option<(u32, Place)> {
+    let corner = side as usize;
+    if corner > 2 {
+        return None;
+    }
+    let beyond = volume.shell().neighbours.beyond(flight.triangles[lane], corner)?;
+    Some((beyond.triangle, across(&flight.place(lane), corner, usize::from(beyond.corner))))
 }
 
 /// A place on the edge opposite to `corner`, in the neighbour whose `opposite` corner lies beyond it.

@@ -1,15 +1,21 @@
 //! What fills the shell: density by sub-element, and the law that turns it into optical depth.
 
 use super::light::Shadows;
-use super::{Start, Step, Stepping};
+use super::prisms::Prisms;
+use super::{From, Journey, Start, Stepping, Steps, Traveller};
+use crate::fur::groom::clump::Nearby;
 use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::Vec3;
+use crate::math::lanes::{self, F32s, Isa, MOST, Mask, Row};
 use crate::render::pelt::{Layer, Pelt};
 use crate::render::shell::Shell;
-use crate::render::shell::block::Block;
-use crate::render::shell::prism::{Jacobian, Place};
+use crate::render::shell::block::{Block, Blocks};
+use crate::render::shell::subelement;
+use crate::render::table::Table;
 use std::f32::consts::FRAC_PI_4;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
 /// How the volume is resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,8 +44,22 @@ impl Default for Resolution {
     }
 }
 
-/// Heights at which tables are kept.
-const TABLE: usize = 64;
+/// A vertex of the skin and the shell over it.
+#[derive(Clone, Copy, Debug)]
+pub struct Vertex {
+    /// On the skin, m.
+    pub foot_m: Vec3,
+    /// Skin to top, m.
+    pub offset_m: Vec3,
+    /// Smooth normal of the skin.
+    pub normal: Vec3,
+    /// Hair colour under the root.
+    pub tint: Vec3,
+    /// Hair density over the preset's.
+    pub density: f32,
+    /// Hair length over the preset's.
+    pub length: f32,
+}
 
 /// The undercoat of a pelt, ready to be marched through.
 ///
@@ -48,24 +68,27 @@ const TABLE: usize = 64;
 #[derive(Debug)]
 pub struct Volume<'a> {
     shell: Shell<'a>,
-    normals: &'a [Vec3],
-    /// Normals of the rest pose, where the skin is in another.
-    rest_normals: Option<Vec<Vec3>>,
+    vertices: Vec<Vertex>,
+    /// Twice the area of each triangle in the rest pose, m².
+    twice_area_m2: Vec<f32>,
+    /// Normals of the rest pose.
+    rest_normals: Vec<Vec3>,
     resolution: Resolution,
     subdivisions: Vec<u8>,
     density: Vec<OnceLock<Block>>,
+    density_ns: AtomicU64,
     /// Shadows of the key light.
     pub shadows: Shadows,
-    reaching: [f32; TABLE + 1],
+    reaching: Table,
     /// Hair area per skin area above a height: of undercoat, and of both kinds.
-    above: [[f32; TABLE + 1]; 2],
+    above: [Table; 2],
 }
 
 impl<'a> Volume<'a> {
     /// Of a pelt's undercoat; none where it has no such hair. `subdivisions` gives d per triangle.
     pub fn new(
         pelt: &Pelt<'a>,
-        normals: &'a [Vec3],
+        normals: &[Vec3],
         to_key: Vec3,
         resolution: Resolution,
         subdivisions: Vec<u8>,
@@ -76,25 +99,39 @@ impl<'a> Volume<'a> {
             return None;
         }
         let triangles = pelt.skin.triangles.len();
-        let cells = |count: usize| std::iter::repeat_with(OnceLock::new).take(count).collect();
-        let height = |i: usize| i as f32 / TABLE as f32;
         let own = Layer::new(fibre, 1.0, 1.0);
         let guard = pelt.guard.map(|(_, fibre)| Layer::new(fibre, 1.0, 1.0));
+        let above = |further: Option<Layer>| {
+            Table::new(|t| {
+                let height_m = t * undercoat.height_m;
+                own.above(height_m) + further.map_or(0.0, |layer| layer.above(height_m))
+            })
+        };
+        let shell = Shell::new(pelt.skin, pelt.fields, undercoat);
+        let fields = pelt.fields;
+        let vertex = |v: usize| Vertex {
+            foot_m: pelt.skin.positions_m[v],
+            offset_m: shell.offsets_m[v],
+            normal: normals[v],
+            tint: fields.tint[v],
+            density: fields.density[v],
+            length: fields.length[v],
+        };
         Some(Self {
-            shell: Shell::new(pelt.skin, pelt.fields, undercoat),
-            normals,
-            rest_normals: pelt.skin.rest_m.as_ref().map(|_| pelt.skin.at_rest().smooth_normals()),
+            vertices: (0..pelt.skin.positions_m.len()).map(vertex).collect(),
+            twice_area_m2: (0..triangles).map(|t| 2.0 * pelt.skin.rest_area_m2(t)).collect(),
+            rest_normals: match pelt.skin.rest_m {
+                Some(_) => pelt.skin.at_rest().smooth_normals(),
+                None => normals.to_vec(),
+            },
             resolution,
             subdivisions,
-            density: cells(triangles),
+            density: std::iter::repeat_with(OnceLock::new).take(triangles).collect(),
+            density_ns: AtomicU64::new(0),
             shadows: Shadows::new(to_key, triangles),
-            reaching: std::array::from_fn(|i| undercoat.reaching(height(i))),
-            above: [None, guard].map(|further| {
-                std::array::from_fn(|i| {
-                    let height_m = height(i) * undercoat.height_m;
-                    own.above(height_m) + further.map_or(0.0, |layer| layer.above(height_m))
-                })
-            }),
+            reaching: Table::new(|t| undercoat.reaching(t)),
+            above: [above(None), above(guard)],
+            shell,
         })
     }
 
@@ -111,7 +148,19 @@ impl<'a> Volume<'a> {
     /// By height in 64ths of the shell's: the share of hairs that reach it; the hair area above it per skin area, of
     /// undercoat and of both kinds.
     pub fn tables(&self) -> [&[f32]; 3] {
-        [&self.reaching, &self.above[0], &self.above[1]]
+        [self.reaching.values(), self.above[0].values(), self.above[1].values()]
+    }
+
+    /// The corners of a triangle.
+    #[inline]
+    pub fn corners(&self, triangle: u32) -> [&Vertex; 3] {
+        self.shell.skin.triangles[triangle as usize].map(|v| &self.vertices[v as usize])
+    }
+
+    /// Twice the area of a triangle in the rest pose, m²: what its hair grew on.
+    #[inline]
+    pub fn twice_area_m2(&self, triangle: u32) -> f32 {
+        self.twice_area_m2[triangle as usize]
     }
 
     /// Bytes of sub-elements filled so far: density and shadow.
@@ -119,40 +168,30 @@ impl<'a> Volume<'a> {
         [self.density.iter().filter_map(OnceLock::get).map(Block::bytes).sum(), self.shadows.bytes()]
     }
 
-    /// Prisms filled so far, and their sub-elements.
-    pub fn filled(&self) -> (usize, usize) {
-        self.density.iter().filter_map(OnceLock::get).fold((0, 0), |(n, all), block| (n + 1, all + block.bytes()))
+    /// Time spent filling so far, summed over threads, ms: density and shadow.
+    pub fn filling_ms(&self) -> [f64; 2] {
+        [&self.density_ns, &self.shadows.spent_ns].map(|ns| ns.load(Ordering::Relaxed) as f64 * 1e-6)
     }
 
-    /// Hair area above height `t` per skin area: of undercoat, and of both kinds.
-    pub fn above(&self, triangle: u32, b: Vec3, t: f32) -> [f32; 2] {
-        let fields = self.shell.fields;
-        let factor = self.shell.scalar(&fields.density, triangle, b) * self.shell.scalar(&fields.length, triangle, b);
-        [factor * table(&self.above[0], t), factor * table(&self.above[1], t)]
+    /// Hair area above heights per skin area: of undercoat, and of both kinds.
+    #[inline(always)]
+    pub fn above<I: Isa>(&self, prisms: &Prisms, steps: &Steps<I>) -> [F32s<I>; 2] {
+        let factor = prisms.density(steps.b) * prisms.length(steps.b);
+        [factor * self.above[0].at_lanes(steps.t), factor * self.above[1].at_lanes(steps.t)]
     }
 
-    /// Unit normal of the skin at a place.
-    pub fn normal(&self, triangle: u32, b: Vec3) -> Vec3 {
-        self.shell.vector(self.normals, triangle, b).normalize_or(Vec3::Y)
-    }
-
-    /// Density over its mean in the sub-element that holds a place.
-    pub fn crowding(&self, triangle: u32, b: Vec3, t: f32) -> f32 {
-        self.density[triangle as usize].get_or_init(|| self.fill(triangle)).at(b, t)
-    }
-
-    fn fill(&self, triangle: u32) -> Block {
-        // Patterns keep to the rest pose, so that they do not swim under a moving skin.
-        let foot_m = self.shell.skin.rest_corners_m(triangle as usize);
-        let normals = self.rest_normals.as_deref().unwrap_or(self.normals);
-        let d = u32::from(self.subdivisions[triangle as usize]);
-        let clump = &self.shell.fields.clump;
-        Block::fill(d, self.resolution.layers, |b| {
-            let root_m = foot_m[0] * b.x + foot_m[1] * b.y + foot_m[2] * b.z;
-            let factor = self.shell.scalar(clump, triangle, b);
-            let normal = self.shell.vector(normals, triangle, b).normalize_or(Vec3::Y);
-            let column = self.shell.undercoat.column(root_m, normal, factor);
-            move |t| column.crowding(t)
+    /// Density over its mean in the sub-elements of a prism.
+    #[inline]
+    pub fn block(&self, triangle: u32) -> &Block {
+        let cell = &self.density[triangle as usize];
+        if let Some(block) = cell.get() {
+            return block;
+        }
+        cell.get_or_init(|| {
+            let start = Instant::now();
+            let block = lanes::run(Fill { volume: self, triangle });
+            self.density_ns.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
+            block
         })
     }
 
@@ -166,66 +205,154 @@ impl<'a> Volume<'a> {
         u32::from(self.subdivisions[triangle as usize]).saturating_sub(self.resolution.shadow_coarser)
     }
 
-    /// The step of `length_m` that begins at a place.
+    /// The steps of `length_m` that begin at `from`.
     ///
     /// Extinction is ρ⊥ D |sin∠|; ρ⊥, hair length per volume, is what stands on the triangle's area, so it thins as the
     /// prism widens. The ends of hairs that lie between the step's heights add (π/4) D² |cos∠| each.
-    #[expect(clippy::too_many_arguments, reason = "one hot call; a struct of these would be made for it alone")]
-    pub fn step(
+    #[inline(always)]
+    pub(super) fn steps<I: Isa>(
         &self,
-        j: &Jacobian,
-        triangle: u32,
-        place: &Place,
-        rates: Vec3,
-        from_m: f32,
-        length_m: f32,
-        direction: Vec3,
-    ) -> Step {
-        let middle = place.moved(rates, 0.5 * length_m).inside();
+        prisms: &Prisms,
+        blocks: &Blocks<'_>,
+        from: &From<I>,
+        length_m: F32s<I>,
+        on: Mask<I>,
+    ) -> Steps<I> {
+        let zero = F32s::splat(0.0);
+        let middle = from.places.moved(from.rates, length_m * 0.5).inside();
         let b = middle.barycentric();
         let undercoat = &self.shell.undercoat;
-        let up_m = j.up_m.length();
-        let hair = j.up_m / up_m;
-        let cosine = hair.dot(direction);
-        let per_m2 = undercoat.density_per_m2
-            * self.shell.scalar(&self.shell.fields.density, triangle, b)
-            * self.crowding(triangle, b, middle.t);
+        let up_m = from.j.up_m.length();
+        let hair = from.j.up_m * (F32s::splat(1.0) / up_m);
+        let cosine = hair.dot(from.direction);
+        let per_m2 = prisms.density(b) * blocks.at(b, middle.t, on) * undercoat.density_per_m2;
         // Hairs per volume and unit of t: on the triangle stand per_m2 · 2A/2 of them, in a volume of |det|/2 per t.
-        let per_volume = 2.0 * per_m2 * self.shell.skin.rest_area_m2(triangle as usize) / j.determinant.abs();
+        let per_volume = per_m2 * prisms.twice_area_m2() / from.j.determinant.abs();
         // Not √(1 − cos²), which rounds to a thousandth where a ray runs along the hair.
-        let sine = undercoat.mean_sine(hair.cross(direction).length());
-        let length_per_volume = per_volume * up_m * undercoat.stretch * table(&self.reaching, middle.t);
-        let end_t = place.t + rates.z * length_m;
-        let ends = (self.reach_at(place.t) - self.reach_at(end_t)).abs();
+        let sine = undercoat.mean_sines(hair.cross(from.direction).length());
+        let length_per_volume = per_volume * up_m * self.reaching.at_lanes(middle.t) * undercoat.stretch;
+        let begin_t = from.places.t;
+        let ends = (self.reach_at(begin_t) - self.reach_at(begin_t + from.rates.z * length_m)).abs();
         let diameter_m = undercoat.diameter_m;
         // Once per hair, whichever end faces the ray: a cylinder's shadow is its side's and one end's.
-        let end_depth = if rates.z != 0.0 && ends > 0.0 {
-            per_volume * ends / rates.z.abs() * FRAC_PI_4 * diameter_m * diameter_m * cosine.abs()
-        } else {
-            0.0
-        };
-        let depth = length_per_volume * diameter_m * sine * length_m + end_depth;
-        Step { from_m, length_m, triangle, place: middle, hair, depth: if depth.is_finite() { depth } else { 0.0 } }
+        let end_m2 = cosine.abs() * (FRAC_PI_4 * diameter_m * diameter_m);
+        let end_depth = ends.gt(zero).keep(per_volume * ends / from.rates.z.abs() * end_m2);
+        let depth = length_per_volume * sine * length_m * diameter_m + end_depth;
+        Steps {
+            from_m: from.at_m,
+            length_m,
+            b,
+            t: middle.t,
+            hair,
+            direction: from.direction,
+            depth: depth.lt(F32s::splat(f32::INFINITY)).keep(depth),
+        }
     }
 
     /// As [`Undercoat::reaching`], with all hairs ended where the ray is at the top.
-    fn reach_at(&self, t: f32) -> f32 {
-        if t >= 1.0 - 1e-4 { 0.0 } else { table(&self.reaching, t) }
+    #[inline(always)]
+    fn reach_at<I: Isa>(&self, t: F32s<I>) -> F32s<I> {
+        t.lt(F32s::splat(1.0 - 1e-4)).keep(self.reaching.at_lanes(t))
     }
 
-    /// Optical depth along a ray that starts at a place, up to `enough`.
+    /// Optical depths along rays, each up to `enough`.
+    pub fn depths_along(&self, journeys: &[Journey], stepping: &Stepping, enough: f32) -> Vec<f32> {
+        lanes::run(Measure { volume: self, journeys, stepping, enough })
+    }
+
+    /// Optical depth along one ray.
     pub fn depth_along(&self, origin_m: Vec3, direction: Vec3, start: Start, stepping: &Stepping, enough: f32) -> f32 {
-        let mut sum = 0.0;
-        super::march(self, origin_m, direction, start, f32::INFINITY, stepping, |step| {
-            sum += step.depth;
-            sum < enough
-        });
-        sum
+        let journey = Journey { origin_m, direction, start, far_m: f32::INFINITY };
+        self.depths_along(&[journey], stepping, enough)[0]
     }
 }
 
-fn table(values: &[f32; TABLE + 1], t: f32) -> f32 {
-    let at = t.clamp(0.0, 1.0) * TABLE as f32;
-    let low = (at as usize).min(TABLE - 1);
-    values[low] + (at - low as f32) * (values[low + 1] - values[low])
+/// Fills the density of one prism.
+struct Fill<'v, 'a> {
+    volume: &'v Volume<'a>,
+    triangle: u32,
+}
+
+impl lanes::Work for Fill<'_, '_> {
+    type Output = Block;
+
+    #[inline(always)]
+    fn run<I: Isa>(self) -> Block {
+        let Self { volume, triangle } = self;
+        // Patterns keep to the rest pose, so that they do not swim under a moving skin.
+        let foot_m = volume.shell.skin.rest_corners_m(triangle as usize);
+        let d = u32::from(volume.subdivisions[triangle as usize]);
+        let (layers, per_layer) = (volume.layers() as usize, 1_usize << (2 * d));
+        let mut nearby = Nearby::default();
+        let mut values = vec![0.0; layers * per_layer];
+        for i in 0..per_layer {
+            let b = subelement::centre(i as u32, d);
+            let root_m = foot_m[0] * b.x + foot_m[1] * b.y + foot_m[2] * b.z;
+            let normal = volume.shell.vector(&volume.rest_normals, triangle, b).normalize_or(Vec3::Y);
+            let factor = volume.shell.scalar(&volume.shell.fields.clump, triangle, b);
+            let column = volume.shell.undercoat.column_near(&mut nearby, root_m, normal, factor);
+            for first in (0..layers).step_by(I::LANES) {
+                let t = F32s::<I>::each(|lane| ((first + lane) as f32 + 0.5) / layers as f32);
+                let crowding = column.crowdings(t).row();
+                for (lane, &value) in crowding.0[..I::LANES.min(layers - first)].iter().enumerate() {
+                    values[(first + lane) * per_layer + i] = value;
+                }
+            }
+        }
+        Block::new(d, layers as u32, &values)
+    }
+}
+
+/// Follows rays for their optical depth.
+struct Measure<'v, 'a, 'j> {
+    volume: &'v Volume<'a>,
+    journeys: &'j [Journey],
+    stepping: &'j Stepping,
+    enough: f32,
+}
+
+impl lanes::Work for Measure<'_, '_, '_> {
+    type Output = Vec<f32>;
+
+    #[inline(always)]
+    fn run<I: Isa>(self) -> Vec<f32> {
+        let Self { volume, journeys, stepping, enough } = self;
+        let found = vec![0.0; journeys.len()];
+        let mut depths = Depths { journeys, next: 0, index: [0; MOST], sum: Row::default(), enough, found };
+        super::march::<I, _>(volume, stepping, &mut depths);
+        depths.found
+    }
+}
+
+/// Sums optical depth.
+struct Depths<'j> {
+    journeys: &'j [Journey],
+    next: usize,
+    index: [usize; MOST],
+    sum: Row,
+    enough: f32,
+    found: Vec<f32>,
+}
+
+impl<I: Isa> Traveller<I> for Depths<'_> {
+    #[inline(always)]
+    fn next(&mut self, lane: usize) -> Option<Journey> {
+        let journey = *self.journeys.get(self.next)?;
+        self.index[lane] = self.next;
+        self.sum.0[lane] = 0.0;
+        self.next += 1;
+        Some(journey)
+    }
+
+    #[inline(always)]
+    fn visit(&mut self, _: &Prisms, steps: &Steps<I>, on: Mask<I>) -> Mask<I> {
+        let sum = F32s::of(&self.sum) + on.keep(steps.depth);
+        self.sum = sum.row();
+        sum.lt(F32s::splat(self.enough))
+    }
+
+    #[inline(always)]
+    fn end(&mut self, lane: usize) {
+        self.found[self.index[lane]] = self.sum.0[lane];
+    }
 }

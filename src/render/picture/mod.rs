@@ -3,6 +3,7 @@
 mod film;
 mod pass;
 mod tile;
+mod undercoat;
 
 use super::march::Stepping;
 use super::march::volume::{Resolution, Volume};
@@ -120,8 +121,10 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
     finish(&mut picture.film, 1.0 / passes as f32);
     if let Some(volume) = &volume {
         let [density, shadow] = volume.bytes();
-        picture.rows.push(Row { name: "densities", ms: 0.0, bytes: density });
-        picture.rows.push(Row { name: "shadows", ms: 0.0, bytes: shadow });
+        let share = 1.0 / rayon::current_num_threads() as f64;
+        let [density_ms, shadow_ms] = volume.filling_ms();
+        picture.rows.push(Row { name: "densities", ms: density_ms * share, bytes: density });
+        picture.rows.push(Row { name: "shadows", ms: shadow_ms * share, bytes: shadow });
         picture.counts.subelements = density as u64;
     }
     Ok(picture)

@@ -2,16 +2,14 @@
 
 use super::film::FilmRows;
 use super::pass::{Band, Pass};
+use super::undercoat::{Look, PixelJourney};
 use crate::data::strands::Strands;
-use crate::math::fast::exp_negative;
-use crate::math::{Vec2, Vec3};
+use crate::math::{Vec2, Vec3, lanes};
 use crate::render::bins::{Grid, TILE};
 use crate::render::flat::{self, Flat, pixel_ray};
 use crate::render::march::enter::Entrances;
-use crate::render::march::light::UndercoatShader;
-use crate::render::march::volume::Volume;
-use crate::render::march::{self, Start};
-use crate::render::resolve::{self, Blending, Face, OPAQUE, Stretch};
+use crate::render::march::{Journey, Start};
+use crate::render::resolve::{self, Blending, Face, Stretch};
 use crate::render::skin::{self, NONE, SkinTile};
 use crate::render::strands::ribbon::{self, Share, Window};
 use crate::render::strands::{Fragment, Knot};
@@ -91,7 +89,7 @@ impl Pass<'_> {
         let Some((volume, shader)) = &self.undercoat else { return };
         let [width, height] = self.settings.size;
         let (x0, y0) = (column * TILE, row * TILE);
-        let Scratch { starts, stretches, opaque_m, step_count, .. } = scratch;
+        let Scratch { starts, journeys, stretches, opaque_m, step_count, .. } = scratch;
         for (face, corners) in entrances.of_tile(tile) {
             let flat = Flat::new(corners);
             let [columns, rows] = self.pixels(&flat::reach(&self.view, &corners));
@@ -108,6 +106,7 @@ impl Pass<'_> {
                 }
             }
         }
+        journeys.clear();
         for y in y0..(y0 + TILE).min(height) {
             for x in x0..(x0 + TILE).min(width) {
                 let at = (y - y0) * TILE + x - x0;
@@ -118,52 +117,35 @@ impl Pass<'_> {
                 // Faces that meet on a ray give one entrance each: the next march begins where the last one ended.
                 starts[at].sort_unstable_by(|a, b| a.at_m.total_cmp(&b.at_m).then(a.triangle.cmp(&b.triangle)));
                 starts[at].dedup_by(|next, kept| next.at_m - kept.at_m < 1e-6 * kept.at_m);
-                let through = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-                let direction = self.view.direction(through);
+                let direction = self.view.direction(Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
                 let scale = direction.length();
-                let ray =
-                    PixelRay { direction: direction / scale, z_per_m: 1.0 / scale, far_m: skin_tile.z_m[at] * scale };
-                for &start in &starts[at] {
-                    let opaque = self.march_pixel(volume, shader, &ray, start, &mut stretches[at], step_count);
-                    opaque_m[at] = opaque_m[at].min(opaque);
-                }
-                stretches[at].sort_by(|a, b| a.from_m.total_cmp(&b.from_m));
+                journeys.extend(starts[at].iter().map(|&start| PixelJourney {
+                    pixel: at as u32,
+                    z_per_m: 1.0 / scale,
+                    journey: Journey {
+                        origin_m: self.view.eye_m,
+                        direction: direction / scale,
+                        start,
+                        far_m: skin_tile.z_m[at] * scale,
+                    },
+                }));
             }
         }
-    }
-
-    /// Adds the stretches of one march; returns the depth from which undercoat hides everything.
-    fn march_pixel(
-        &self,
-        volume: &Volume<'_>,
-        shader: &UndercoatShader<'_>,
-        ray: &PixelRay,
-        start: Start,
-        stretches: &mut Vec<Stretch>,
-        step_count: &mut u64,
-    ) -> f32 {
-        let groups = match self.settings.blending {
-            Blending::Virtual { fragments } => fragments.clamp(1, 64) as f32,
-            Blending::Simplified { .. } => 1.0,
+        let fragments = match self.settings.blending {
+            Blending::Virtual { fragments } => fragments,
+            Blending::Simplified { .. } => 1,
         };
-        let mut through = 1.0_f32;
-        let mut group = Group::default();
-        let (eye_m, stepping) = (self.view.eye_m, &self.settings.stepping);
-        march::march(volume, eye_m, ray.direction, start, ray.far_m, stepping, |step| {
-            *step_count += 1;
-            let left = through * exp_negative(-step.depth);
-            let (albedo, radiance) = shader.look(volume, step, ray.direction);
-            group.add(step, through - left, albedo, radiance);
-            // A new virtual fragment at equal parts of what the march hides in the end.
-            if ((1.0 - left) * groups).floor() > ((1.0 - through) * groups).floor() {
-                stretches.extend(group.take(ray.z_per_m));
-            }
-            through = left;
-            through > OPAQUE
+        *step_count += lanes::run(Look {
+            volume,
+            shader,
+            stepping: &self.settings.stepping,
+            fragments,
+            journeys,
+            stretches,
+            opaque_m,
         });
-        let end_m = group.to_m.max(stretches.last().map_or(0.0, |s| s.to_m / ray.z_per_m)) * ray.z_per_m;
-        stretches.extend(group.take(ray.z_per_m));
-        if through > OPAQUE { f32::INFINITY } else { end_m }
+        // Rays of one pixel may be followed side by side.
+        stretches.iter_mut().for_each(|some| some.sort_by(|a, b| a.from_m.total_cmp(&b.from_m)));
     }
 
     /// Whether a hair that lies behind the skin of a pixel's middle lies before the skin of its own place: on slanting
@@ -213,58 +195,11 @@ impl Pass<'_> {
 /// Fragments of a pixel from which on it pays to look for an opaque front.
 const TRIM_AT: usize = 48;
 
-/// The ray through a pixel's middle.
-struct PixelRay {
-    direction: Vec3,
-    /// Depth along the optical axis per distance along the ray.
-    z_per_m: f32,
-    /// Where skin hides the rest, m along the ray.
-    far_m: f32,
-}
-
-/// Steps of a march on their way to become one virtual fragment.
-#[derive(Default)]
-struct Group {
-    from_m: f32,
-    to_m: f32,
-    depth: f32,
-    weight: f32,
-    radiance: Vec3,
-    albedo: Vec3,
-    tangent: Vec3,
-}
-
-impl Group {
-    fn add(&mut self, step: &march::Step, weight: f32, albedo: Vec3, radiance: Vec3) {
-        if self.depth == 0.0 {
-            self.from_m = step.from_m;
-        }
-        self.to_m = step.from_m + step.length_m;
-        self.depth += step.depth;
-        self.weight += weight;
-        self.radiance += weight * radiance;
-        self.albedo += weight * albedo;
-        self.tangent += weight * step.hair;
-    }
-
-    fn take(&mut self, z_per_m: f32) -> Option<Stretch> {
-        let group = std::mem::take(self);
-        let scale = 1.0 / group.weight;
-        (group.depth > 0.0 && scale.is_finite()).then(|| Stretch {
-            from_m: group.from_m * z_per_m,
-            to_m: group.to_m * z_per_m,
-            depth: group.depth,
-            radiance: group.radiance * scale,
-            albedo: group.albedo * scale,
-            tangent: group.tangent * scale,
-        })
-    }
-}
-
 /// What a tile's pixels hold, kept between tiles for its memory.
 pub(super) struct Scratch {
     pixels: Vec<Vec<Fragment>>,
     starts: Vec<Vec<Start>>,
+    journeys: Vec<PixelJourney>,
     stretches: Vec<Vec<Stretch>>,
     /// Depth from which undercoat hides everything, m.
     opaque_m: Vec<f32>,
@@ -291,6 +226,7 @@ impl Default for Scratch {
         Self {
             pixels: vec![Vec::new(); SIZE],
             starts: vec![Vec::new(); SIZE],
+            journeys: Vec::new(),
             stretches: vec![Vec::new(); SIZE],
             opaque_m: vec![f32::INFINITY; SIZE],
             trim_at: vec![TRIM_AT; SIZE],

@@ -1,13 +1,13 @@
 //! Density and shadow stored per sub-element of one prism.
 
 use super::subelement;
-use crate::math::Vec3;
+use crate::math::lanes::{F32s, Isa, MOST, Mask, Row, U32s, Vec3s};
 
 /// The largest value that a byte can hold; 1 is byte 64 exactly.
 const LARGEST: f32 = (255.0 / 64.0) * (255.0 / 64.0);
 
 /// Values in layers of sub-elements: i_l·4^d + i, equation (3) within one voxel.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Block {
     d: u32,
     layers: u32,
@@ -15,33 +15,10 @@ pub struct Block {
 }
 
 impl Block {
-    /// Fills a block; `column(barycentric)` is asked for every sub-element of a layer, and what it gives for every height.
-    pub fn fill<F: FnMut(f32) -> f32>(d: u32, layers: u32, mut column: impl FnMut(Vec3) -> F) -> Self {
-        let per_layer = 1_usize << (2 * d);
-        let mut values = vec![0; per_layer * layers as usize];
-        for i in 0..per_layer {
-            let mut value = column(subelement::centre(i as u32, d));
-            for layer in 0..layers as usize {
-                values[layer * per_layer + i] = code(value((layer as f32 + 0.5) / layers as f32));
-            }
-        }
-        Self { d, layers, values: values.into() }
-    }
-
-    /// The value of the sub-element that holds a place.
-    pub fn at(&self, b: Vec3, t: f32) -> f32 {
-        let layer = ((t * self.layers as f32) as u32).min(self.layers - 1);
-        decode(self.values[((layer << (2 * self.d)) + subelement::index(b, self.d)) as usize])
-    }
-
-    /// The same, linear between the middles of layers.
-    pub fn between_layers(&self, b: Vec3, t: f32) -> f32 {
-        let at = (t * self.layers as f32 - 0.5).clamp(0.0, (self.layers - 1) as f32);
-        let low = at as u32;
-        let i = subelement::index(b, self.d);
-        let value = |layer: u32| decode(self.values[((layer << (2 * self.d)) + i) as usize]);
-        let (from, to) = (value(low), value((low + 1).min(self.layers - 1)));
-        from + (at - low as f32) * (to - from)
+    /// Of `d` subdivisions and `layers`, from values by i_l·4^d + i.
+    pub fn new(d: u32, layers: u32, values: &[f32]) -> Self {
+        debug_assert_eq!(values.len(), (layers << (2 * d)) as usize, "one value per sub-element");
+        Self { d, layers, values: values.iter().map(|&v| code(v)).collect() }
     }
 
     /// Bytes held.
@@ -50,12 +27,59 @@ impl Block {
     }
 }
 
+/// The blocks that marches side by side are in.
+#[derive(Clone, Copy, Debug)]
+pub struct Blocks<'a> {
+    blocks: [&'a [u8]; MOST],
+    /// 2^d.
+    n: Row,
+    layers: f32,
+}
+
+impl<'a> Blocks<'a> {
+    /// No block yet, of a volume of so many layers.
+    pub fn new(layers: u32) -> Self {
+        Self { blocks: [&[]; MOST], n: Row([1.0; MOST]), layers: layers as f32 }
+    }
+
+    /// Puts lane `i` into a block.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, block: &'a Block) {
+        self.blocks[i] = &block.values;
+        self.n.0[i] = (1_u32 << block.d) as f32;
+    }
+
+    /// Values of the sub-elements that hold places; 0 in lanes not in `on`.
+    #[inline(always)]
+    pub fn at<I: Isa>(&self, b: Vec3s<I>, t: F32s<I>, on: Mask<I>) -> F32s<I> {
+        let layer = (t * self.layers).floor().within(0.0, self.layers - 1.0);
+        self.fetch(subelement::indices(b, F32s::of(&self.n)), layer, on)
+    }
+
+    /// The same, linear between the middles of layers.
+    #[inline(always)]
+    pub fn between_layers<I: Isa>(&self, b: Vec3s<I>, t: F32s<I>, on: Mask<I>) -> F32s<I> {
+        let last = self.layers - 1.0;
+        let at = (t * self.layers - 0.5).within(0.0, last);
+        let low = at.floor();
+        let i = subelement::indices(b, F32s::of(&self.n));
+        let (from, to) = (self.fetch(i, low, on), self.fetch(i, (low + 1.0).min(F32s::splat(last)), on));
+        from + (at - low) * (to - from)
+    }
+
+    #[inline(always)]
+    fn fetch<I: Isa>(&self, i: U32s<I>, layer: F32s<I>, on: Mask<I>) -> F32s<I> {
+        let n = F32s::of(&self.n).to_whole();
+        let at = layer.to_whole().times(n.times(n)).plus(i).row();
+        let on = on.bits();
+        let byte =
+            F32s::each(|lane| if on >> lane & 1 != 0 { f32::from(self.blocks[lane][at[lane] as usize]) } else { 0.0 });
+        let root = byte * (1.0 / 255.0);
+        root * root * LARGEST
+    }
+}
+
 /// Square-root coding: small values keep their relative precision.
 fn code(value: f32) -> u8 {
     ((value / LARGEST).clamp(0.0, 1.0).sqrt() * 255.0 + 0.5) as u8
-}
-
-fn decode(byte: u8) -> f32 {
-    let root = f32::from(byte) * (1.0 / 255.0);
-    root * root * LARGEST
 }

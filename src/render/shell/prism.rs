@@ -39,13 +39,6 @@ impl Place {
         Vec3::new(1.0 - self.b[0] - self.b[1], self.b[0], self.b[1])
     }
 
-    /// The nearest place inside: a march that rounding or a folded prism has led astray must not read beyond the corners.
-    pub fn inside(&self) -> Self {
-        let b = self.barycentric().max(Vec3::ZERO);
-        let sum = b.element_sum();
-        Self { b: [b.y / sum, b.z / sum], t: self.t.clamp(0.0, 1.0) }
-    }
-
     /// Moved by rates times a distance.
     pub fn moved(&self, rates: Vec3, by: f32) -> Self {
         Self { b: [self.b[0] + rates.x * by, self.b[1] + rates.y * by], t: self.t + rates.z * by }

@@ -3,6 +3,7 @@
 //! dist⊥(p, e_x) / dist⊥(p_x, e_x) is the barycentric coordinate b_x, so that eq. (1) reads i_x = ⌊(1 − b_x) 2^d⌋.
 
 use crate::math::Vec3;
+use crate::math::lanes::{F32s, Isa, U32s, Vec3s};
 
 /// Index of the sub-element that holds barycentric coordinates `b` in a layer split `d` times, in 0 … 4^d − 1.
 ///
@@ -18,6 +19,18 @@ pub fn index(b: Vec3, d: u32) -> u32 {
     let (i1, i2) = ((u1 as i32).min(last), (u2.clamp(0.0, n) as i32).min(last));
     // Equation (2).
     (row * (row + 1) + (i1 - i2).clamp(-row, row)) as u32
+}
+
+/// [`index`] in lanes; `n` is 2^d.
+#[inline(always)]
+pub fn indices<I: Isa>(b: Vec3s<I>, n: F32s<I>) -> U32s<I> {
+    let (zero, one, last) = (F32s::splat(0.0), F32s::splat(1.0), n - 1.0);
+    let u0 = ((one - b.x) * n).max(zero).min(n);
+    let u1 = ((one - b.y) * n).max(zero).min(n);
+    let u2 = (n * 2.0 - u0 - u1).max(zero).min(n);
+    let row = u0.floor().min(last);
+    let across = u1.floor().min(last) - u2.floor().min(last);
+    (row * (row + 1.0) + across.max(-row).min(row)).to_whole()
 }
 
 /// Barycentric coordinates of a sub-element's centre.

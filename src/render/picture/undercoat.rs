@@ -1,0 +1,162 @@
+//! Rays from the eye through undercoat, gathered into virtual fragments.
+
+use crate::math::Vec3;
+use crate::math::lanes::{F32s, Isa, MOST, Mask, Row, Vec3Row, Vec3s, Work};
+use crate::render::march::light::UndercoatShader;
+use crate::render::march::prisms::Prisms;
+use crate::render::march::volume::Volume;
+use crate::render::march::{Journey, Stepping, Steps, Traveller, march};
+use crate::render::resolve::{OPAQUE, Stretch};
+use crate::render::shell::block::Blocks;
+
+/// A ray of a pixel, and where its depths are measured along the optical axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PixelJourney {
+    /// Pixel of the tile.
+    pub(super) pixel: u32,
+    /// Depth along the optical axis per distance along the ray.
+    pub(super) z_per_m: f32,
+    pub(super) journey: Journey,
+}
+
+/// Follows the rays of a tile; gives the number of steps.
+pub(super) struct Look<'a> {
+    pub(super) volume: &'a Volume<'a>,
+    pub(super) shader: &'a UndercoatShader<'a>,
+    pub(super) stepping: &'a Stepping,
+    /// Most virtual fragments per ray.
+    pub(super) fragments: u32,
+    pub(super) journeys: &'a [PixelJourney],
+    /// Virtual fragments by pixel.
+    pub(super) stretches: &'a mut [Vec<Stretch>],
+    /// By pixel, depth from which undercoat hides everything, m.
+    pub(super) opaque_m: &'a mut [f32],
+}
+
+impl Work for Look<'_> {
+    type Output = u64;
+
+    #[inline(always)]
+    fn run<I: Isa>(self) -> u64 {
+        let Some(&first) = self.journeys.first() else { return 0 };
+        let (volume, stepping) = (self.volume, self.stepping);
+        let mut sight = Sight {
+            shadows: Blocks::new(volume.layers()),
+            fragments: self.fragments.clamp(1, 64) as f32,
+            next: 0,
+            current: [first; MOST],
+            through: Row::default(),
+            groups: Groups::default(),
+            step_count: 0,
+            look: self,
+        };
+        march::<I, _>(volume, stepping, &mut sight);
+        sight.step_count
+    }
+}
+
+/// What rays from the eye have gathered.
+struct Sight<'a> {
+    look: Look<'a>,
+    next: usize,
+    current: [PixelJourney; MOST],
+    shadows: Blocks<'a>,
+    fragments: f32,
+    through: Row,
+    groups: Groups,
+    step_count: u64,
+}
+
+/// Steps on their way to become one virtual fragment, in each lane.
+#[derive(Clone, Copy, Debug, Default)]
+struct Groups {
+    from_m: Row,
+    to_m: Row,
+    depth: Row,
+    weight: Row,
+    radiance: Vec3Row,
+    albedo: Vec3Row,
+    tangent: Vec3Row,
+}
+
+impl Sight<'_> {
+    /// Closes the virtual fragment of a lane.
+    fn close(&mut self, lane: usize) {
+        let groups = &mut self.groups;
+        let scale = 1.0 / groups.weight.0[lane];
+        let PixelJourney { pixel, z_per_m, .. } = self.current[lane];
+        if groups.depth.0[lane] > 0.0 && scale.is_finite() {
+            self.look.stretches[pixel as usize].push(Stretch {
+                from_m: groups.from_m.0[lane] * z_per_m,
+                to_m: groups.to_m.0[lane] * z_per_m,
+                depth: groups.depth.0[lane],
+                radiance: groups.radiance.lane(lane) * scale,
+                albedo: groups.albedo.lane(lane) * scale,
+                tangent: groups.tangent.lane(lane) * scale,
+            });
+        }
+        groups.depth.0[lane] = 0.0;
+        groups.weight.0[lane] = 0.0;
+        groups.radiance.set(lane, Vec3::ZERO);
+        groups.albedo.set(lane, Vec3::ZERO);
+        groups.tangent.set(lane, Vec3::ZERO);
+    }
+}
+
+impl<I: Isa> Traveller<I> for Sight<'_> {
+    #[inline(always)]
+    fn next(&mut self, lane: usize) -> Option<Journey> {
+        let current = *self.look.journeys.get(self.next)?;
+        self.next += 1;
+        self.current[lane] = current;
+        self.through.0[lane] = 1.0;
+        Some(current.journey)
+    }
+
+    #[inline(always)]
+    fn enter(&mut self, lane: usize, triangle: u32) {
+        let volume = self.look.volume;
+        self.shadows.set(lane, volume.shadows.block(volume, triangle));
+    }
+
+    #[inline(always)]
+    fn visit(&mut self, prisms: &Prisms, steps: &Steps<I>, on: Mask<I>) -> Mask<I> {
+        let one = F32s::splat(1.0);
+        let shadow = self.shadows.between_layers(steps.b, steps.t, on);
+        let (albedo, radiance) = self.look.shader.look(self.look.volume, prisms, steps, shadow);
+        let through = F32s::of(&self.through);
+        let left = through * on.select((-steps.depth).exp_negative(), one);
+        let weight = through - left;
+        let groups = &mut self.groups;
+        let depth = F32s::of(&groups.depth);
+        let first = on & !depth.gt(F32s::splat(0.0));
+        groups.from_m = first.select(steps.from_m, F32s::of(&groups.from_m)).row();
+        groups.to_m = on.select(steps.from_m + steps.length_m, F32s::of(&groups.to_m)).row();
+        groups.depth = (depth + on.keep(steps.depth)).row();
+        groups.weight = (F32s::of(&groups.weight) + on.keep(weight)).row();
+        groups.radiance = (Vec3s::of(&groups.radiance) + (radiance * weight).keep(on)).rows();
+        groups.albedo = (Vec3s::of(&groups.albedo) + (albedo * weight).keep(on)).rows();
+        groups.tangent = (Vec3s::of(&groups.tangent) + (steps.hair * weight).keep(on)).rows();
+        // A new virtual fragment at equal parts of what the ray loses in the end.
+        let part_after = ((one - left) * self.fragments).floor();
+        let part_before = ((one - through) * self.fragments).floor();
+        let full = (on & part_after.gt(part_before)).bits();
+        self.through = left.row();
+        self.step_count += u64::from(on.bits().count_ones());
+        for lane in 0..I::LANES {
+            if full >> lane & 1 != 0 {
+                self.close(lane);
+            }
+        }
+        left.gt(F32s::splat(OPAQUE))
+    }
+
+    fn end(&mut self, lane: usize) {
+        self.close(lane);
+        let PixelJourney { pixel, z_per_m, .. } = self.current[lane];
+        if self.through.0[lane] <= OPAQUE {
+            let opaque_m = &mut self.look.opaque_m[pixel as usize];
+            *opaque_m = opaque_m.min(self.groups.to_m.0[lane] * z_per_m);
+        }
+    }
+}
