@@ -22,6 +22,7 @@ mod hard_renders;
 mod harness;
 mod hostile;
 mod hybrid;
+mod lanes;
 mod laws;
 mod made;
 mod meshes;

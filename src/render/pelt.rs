@@ -132,6 +132,23 @@ pub fn terminators<I: Isa>(to_light: Vec3s<I>, normal: Vec3s<I>) -> F32s<I> {
     x * x * (F32s::splat(3.0) - x * 2.0)
 }
 
+/// Transmittance per channel: optical depth times the power that the hair's colour gives ([`crate::shade::shadow_power`]).
+#[inline(always)]
+pub fn through<I: Isa>(power: Vec3s<I>, depth: F32s<I>) -> Vec3s<I> {
+    let depth = -depth;
+    Vec3s::new((power.x * depth).exp_negative(), (power.y * depth).exp_negative(), (power.z * depth).exp_negative())
+}
+
+/// Colours at root, middle and tip, linear in between, where s ∈ [0, 1] goes along the hair.
+#[inline(always)]
+pub fn ramps<I: Isa>(ramp: &[Vec3; 3], s: F32s<I>) -> Vec3s<I> {
+    let [root, middle, tip] = [Vec3s::splat(ramp[0]), Vec3s::splat(ramp[1]), Vec3s::splat(ramp[2])];
+    let (one, twice) = (F32s::splat(1.0), s * 2.0);
+    let lower = root + (middle - root) * twice;
+    let upper = middle + (tip - middle) * (twice - one);
+    lower.select(twice.lt(one), upper)
+}
+
 /// [`sky_depth`] in lanes.
 #[inline(always)]
 pub fn sky_depths<I: Isa>(above: F32s<I>) -> F32s<I> {

@@ -5,7 +5,7 @@ use super::volume::Volume;
 use super::{Journey, Start, Stepping, Steps};
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, Vec3s};
-use crate::render::pelt::{Lighting, Pelt, sky_depths, slant_depths, terminators};
+use crate::render::pelt::{Lighting, Pelt, ramps, sky_depths, slant_depths, terminators, through};
 use crate::render::shell::block::Block;
 use crate::render::shell::prism::Place;
 use crate::render::shell::subelement;
@@ -103,7 +103,7 @@ impl<'a> UndercoatShader<'a> {
         steps: &Steps<I>,
         shadow: F32s<I>,
     ) -> (Vec3s<I>, Vec3s<I>) {
-        let albedo = prisms.tint(steps.b).times(self.ramp(steps.t));
+        let albedo = prisms.tint(steps.b).times(ramps(&self.ramp, steps.t));
         let share = albedo * F32s::splat(self.albedo_share);
         let power = Vec3s::new(shadow_power(share.x), shadow_power(share.y), shadow_power(share.z));
         let [own, above] = volume.above(prisms, steps);
@@ -130,16 +130,6 @@ impl<'a> UndercoatShader<'a> {
         let irradiance = Vec3s::splat(light.irradiance) * (angles.cos_in() * open);
         (spot.albedo * tinted).plus(plain).times(through(spot.power, depth)).times(irradiance)
     }
-
-    /// Colour factors at heights.
-    #[inline(always)]
-    fn ramp<I: Isa>(&self, t: F32s<I>) -> Vec3s<I> {
-        let [root, middle, tip] = [Vec3s::splat(self.ramp[0]), Vec3s::splat(self.ramp[1]), Vec3s::splat(self.ramp[2])];
-        let (one, twice) = (F32s::splat(1.0), t * 2.0);
-        let lower = root + (middle - root) * twice;
-        let upper = middle + (tip - middle) * (twice - one);
-        lower.select(twice.lt(one), upper)
-    }
 }
 
 /// Undercoat to be lit.
@@ -149,11 +139,4 @@ struct Spot<I: Isa> {
     normal: Vec3s<I>,
     hair: Vec3s<I>,
     to_eye: Vec3s<I>,
-}
-
-/// Transmittance per channel.
-#[inline(always)]
-fn through<I: Isa>(power: Vec3s<I>, depth: F32s<I>) -> Vec3s<I> {
-    let depth = -depth;
-    Vec3s::new((power.x * depth).exp_negative(), (power.y * depth).exp_negative(), (power.z * depth).exp_negative())
 }

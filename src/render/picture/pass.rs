@@ -16,6 +16,7 @@ use crate::render::pelt::{Lighting, Pelt};
 use crate::render::skin::SkinTile;
 use crate::render::strands::shade::GuardShader;
 use crate::render::strands::{Knot, Look, project};
+use crate::render::table::Table;
 use crate::render::view::View;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -31,6 +32,8 @@ pub(super) struct Pass<'a> {
     pub(super) skin_camera_m: Vec<Vec3>,
     pub(super) guard: Option<(&'a Strands, GuardShader<'a>)>,
     pub(super) undercoat: Option<(&'a Volume<'a>, UndercoatShader<'a>)>,
+    /// Opacity of a guard hair along it.
+    pub(super) opacity: Table,
 }
 
 /// The strands of a band, ready to be drawn.
@@ -57,7 +60,8 @@ impl<'a> Pass<'a> {
         };
         let skin_camera_m = pelt.skin.positions_m.iter().map(|&p| view.camera_from_world(p)).collect();
         let undercoat = volume.map(|volume| (volume, UndercoatShader::new(pelt, lighting)));
-        Ok(Self { pelt, lighting, normals, view, settings, skin_camera_m, guard, undercoat })
+        let opacity = Table::new(|s| pelt.guard.map_or(1.0, |(strands, _)| strands.profile.opacity_at(s)));
+        Ok(Self { pelt, lighting, normals, view, settings, skin_camera_m, guard, undercoat, opacity })
     }
 
     pub(super) fn run(&self, picture: &mut Picture) -> Film {
@@ -208,8 +212,8 @@ impl<'a> Pass<'a> {
                 let (mut knots, mut looks) = (Vec::with_capacity(size), Vec::with_capacity(size));
                 for &strand in chunk {
                     project::knots(strands, strand as usize, &self.view, &mut knots);
-                    shader.strand(strand as usize, &mut looks);
                 }
+                shader.strands(chunk, &mut looks);
                 (knots, looks)
             })
             .collect();

@@ -188,7 +188,7 @@ impl Pass<'_> {
     fn opacity(&self, strands: &Strands, fragment: &Fragment) -> f32 {
         let points = strands.points_per_strand;
         let piece = fragment.knot as usize % points;
-        strands.profile.opacity_at((piece as f32 + fragment.along) / (points - 1) as f32)
+        self.opacity.at((piece as f32 + fragment.along) / (points - 1) as f32)
     }
 }
 

@@ -65,8 +65,8 @@ fn sweep(a: Point, b: Point, bounds: Bounds, mut emit: impl FnMut(Share)) {
     // A ribbon of width 2·half, cut parallel to the minor axis, is this much wider along it.
     let widen = (1.0 + slope * slope).sqrt();
     let (low, high) = if run > 0.0 { (a.major, b.major) } else { (b.major, a.major) };
-    let first = (low.floor() as i32).max(bounds.major[0]);
-    let last = (high.ceil() as i32).min(bounds.major[1]);
+    let first = floor(low).max(bounds.major[0]);
+    let last = floor(-high).saturating_neg().min(bounds.major[1]);
     for row in first..last {
         let from = low.max(row as f32);
         let to = high.min((row + 1) as f32);
@@ -81,8 +81,8 @@ fn sweep(a: Point, b: Point, bounds: Bounds, mut emit: impl FnMut(Share)) {
         let along = linear * a.z_m / (b.z_m + linear * (a.z_m - b.z_m));
         let drift = (slope * share).abs();
         let reach = half + 0.5 * drift;
-        let begin = ((centre - reach).floor() as i32).max(bounds.minor[0]);
-        let end = ((centre + reach).ceil() as i32).min(bounds.minor[1]);
+        let begin = floor(centre - reach).max(bounds.minor[0]);
+        let end = floor(-(centre + reach)).saturating_neg().min(bounds.minor[1]);
         let covered_up_to = |x: f32| ramp(x - (centre - half), drift) - ramp(x - (centre + half), drift);
         let mut before = covered_up_to(begin as f32);
         for x in begin..end {
@@ -94,6 +94,12 @@ fn sweep(a: Point, b: Point, bounds: Bounds, mut emit: impl FnMut(Share)) {
             }
         }
     }
+}
+
+/// The whole number at or below; without a call, which `f32::floor` is on machines of the oldest kind.
+fn floor(v: f32) -> i32 {
+    let cut = v as i32;
+    cut.saturating_sub(i32::from(cut as f32 > v))
 }
 
 /// max(v, 0), averaged over a window of width `drift` around v.

@@ -3,8 +3,9 @@
 use super::Look;
 use crate::data::strands::Strands;
 use crate::math::Vec3;
-use crate::math::fast::exp_negative;
-use crate::render::pelt::{Layer, Lighting, Pelt, sky_depth, slant_depth, terminator};
+use crate::math::lanes::{self, F32s, Isa, Row, Vec3Row, Vec3s};
+use crate::render::pelt::{Layer, Lighting, Pelt, ramps, sky_depths, slant_depths, terminators, through};
+use crate::render::table::Table;
 use crate::shade::lobes::Lobes;
 use crate::shade::{Angles, shadow_power};
 
@@ -17,6 +18,10 @@ pub struct GuardShader<'a> {
     normals: &'a [Vec3],
     eye_m: Vec3,
     albedo_share: f32,
+    /// Height at which no hair is left where the length field is 1, m.
+    top_m: f32,
+    /// Hair area above heights per skin area, by their share of `top_m`, where the fields are 1.
+    above: Table,
 }
 
 impl<'a> GuardShader<'a> {
@@ -34,11 +39,20 @@ impl<'a> GuardShader<'a> {
         let lobes = Lobes::new(&pelt.hair.guard)?;
         let p = &pelt.hair.guard;
         let albedo_share = (p.tt.albedo + p.trt.albedo + p.diffuse) as f32;
-        Ok(Self { pelt, strands, lighting, lobes, normals, eye_m, albedo_share })
+        let layer = |fibre| Layer::new(fibre, 1.0, 1.0);
+        let layers = [pelt.guard.map(|(_, fibre)| layer(fibre)), pelt.undercoat.map(layer)];
+        let top_m = layers.iter().flatten().map(|l| l.height_m + 5.0 * l.spread_m).fold(f32::MIN_POSITIVE, f32::max);
+        let above = Table::new(|x| layers.iter().flatten().map(|layer| layer.above(x * top_m)).sum());
+        Ok(Self { pelt, strands, lighting, lobes, normals, eye_m, albedo_share, top_m, above })
     }
 
-    /// Appends the looks of one strand's points, root first.
-    pub fn strand(&self, strand: usize, out: &mut Vec<Look>) {
+    /// Appends the looks of some strands' points, root first.
+    pub fn strands(&self, strands: &[u32], out: &mut Vec<Look>) {
+        lanes::run(Shade { shader: self, strands, out });
+    }
+
+    #[inline(always)]
+    fn strand<I: Isa>(&self, strand: usize, out: &mut Vec<Look>) {
         let (strands, pelt) = (self.strands, &self.pelt);
         let root = strands.roots[strand];
         let corners = pelt.skin.triangles[root.triangle as usize].map(|v| v as usize);
@@ -48,39 +62,93 @@ impl<'a> GuardShader<'a> {
         let normal = mix3(self.normals).normalize_or(Vec3::Y);
         let lean = mix3(&pelt.fields.lean).normalize_or(normal);
         let (density, length) = (mix1(&pelt.fields.density), mix1(&pelt.fields.length));
-        let layer = |fibre| Layer::new(fibre, density, length);
-        let layers = [pelt.guard.map(|(_, fibre)| layer(fibre)), pelt.undercoat.map(layer)];
+        let factor = density * length;
+        // Height along the lean, so that a leaning coat's layers are as thick as its hairs are long.
+        let rise = lean.dot(normal).max(0.05);
+        let share_of_top = 1.0 / (rise * self.top_m * length).max(f32::MIN_POSITIVE);
 
         let points = strands.points_of_m(strand);
-        let rise = lean.dot(normal).max(0.05);
         let last = points.len() - 1;
-        for (i, &point) in points.iter().enumerate() {
-            let s = i as f32 / last as f32;
-            let along = (points[(i + 1).min(last)] - points[i.saturating_sub(1)]).normalize_or(lean);
-            // Height along the lean, so that a leaning coat's layers are as thick as its hairs are long.
-            let height_m = (point - points[0]).dot(normal) / rise;
-            let above = layers.iter().flatten().map(|layer| layer.above(height_m)).sum();
-            let albedo = strands.tint[strand] * strands.profile.ramp_at(s);
-            let to_eye = (self.eye_m - point).normalize_or(normal);
-            out.push(Look { radiance: self.radiance(albedo, along, to_eye, normal, lean, above), albedo });
+        for first in (0..points.len()).step_by(I::LANES) {
+            let count = I::LANES.min(points.len() - first);
+            let (mut at_m, mut along, mut s) = (Vec3Row::default(), Vec3Row::default(), Row::default());
+            for lane in 0..count {
+                let i = first + lane;
+                at_m.set(lane, points[i]);
+                along.set(lane, points[(i + 1).min(last)] - points[i.saturating_sub(1)]);
+                s.0[lane] = i as f32 / last as f32;
+            }
+            let at_m = Vec3s::<I>::of(&at_m);
+            let normal = Vec3s::splat(normal);
+            let spot = Spot {
+                albedo: self.ramp(F32s::of(&s)).times(Vec3s::splat(strands.tint[strand])),
+                hair: Vec3s::of(&along).normalized_or(Vec3s::splat(lean)),
+                to_eye: (Vec3s::splat(self.eye_m) - at_m).normalized_or(normal),
+                normal,
+                lean: Vec3s::splat(lean),
+                above: {
+                    let height_m = (at_m - Vec3s::splat(points[0])).dot(normal);
+                    self.above.at_lanes(height_m * share_of_top) * factor
+                },
+            };
+            let (radiance, albedo) = (self.radiance(&spot).rows(), spot.albedo.rows());
+            out.extend((0..count).map(|lane| Look { radiance: radiance.lane(lane), albedo: albedo.lane(lane) }));
         }
     }
 
-    fn radiance(&self, albedo: Vec3, along: Vec3, to_eye: Vec3, normal: Vec3, lean: Vec3, above: f32) -> Vec3 {
-        let power = (albedo * self.albedo_share).map(shadow_power);
-        let through = |depth: f32| (power * -depth).map(exp_negative);
-        let mut sum = self.lighting.ambient * albedo * self.albedo_share * through(sky_depth(above));
+    #[inline(always)]
+    fn radiance<I: Isa>(&self, spot: &Spot<I>) -> Vec3s<I> {
+        let share = spot.albedo * F32s::splat(self.albedo_share);
+        let power = Vec3s::new(shadow_power(share.x), shadow_power(share.y), shadow_power(share.z));
+        let ambient = share.times(Vec3s::splat(self.lighting.ambient));
+        let mut sum = ambient.times(through(power, sky_depths(spot.above)));
+        let lobes = self.lobes.map(F32s::splat);
         for light in std::iter::once(&self.lighting.key).chain(&self.lighting.fill) {
-            let open = terminator(light.to_light, normal);
-            if open <= 0.0 {
-                continue;
-            }
-            let angles = Angles::of_vectors(along, light.to_light, to_eye);
-            let s = self.lobes.scatter(angles);
-            let scattered = Vec3::splat(s.plain) + albedo * s.once + albedo * albedo * s.twice;
-            let depth = slant_depth(above, light.to_light, normal, lean);
-            sum += light.irradiance * scattered * through(depth) * (angles.cos_in() * open);
+            let to_light = Vec3s::splat(light.to_light);
+            let angles = Angles::of_lanes(spot.hair, to_light, spot.to_eye);
+            let s = lobes.scatter(angles);
+            let twice = spot.albedo.times(spot.albedo) * s.twice;
+            let scattered = (spot.albedo * s.once + twice).plus(s.plain);
+            let shadow = through(power, slant_depths(spot.above, to_light, spot.normal, spot.lean));
+            let open = terminators(to_light, spot.normal);
+            let irradiance = Vec3s::splat(light.irradiance) * (angles.cos_in() * open);
+            sum = sum + scattered.times(shadow).times(irradiance);
         }
         sum
     }
+
+    /// Colour factors along the hair.
+    #[inline(always)]
+    fn ramp<I: Isa>(&self, s: F32s<I>) -> Vec3s<I> {
+        ramps(&self.strands.profile.ramp, s)
+    }
+}
+
+/// Shades some strands.
+struct Shade<'a, 'o> {
+    shader: &'a GuardShader<'a>,
+    strands: &'a [u32],
+    out: &'o mut Vec<Look>,
+}
+
+impl lanes::Work for Shade<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: Isa>(self) {
+        for &strand in self.strands {
+            self.shader.strand::<I>(strand as usize, self.out);
+        }
+    }
+}
+
+/// Points of a hair to be lit.
+struct Spot<I: Isa> {
+    albedo: Vec3s<I>,
+    hair: Vec3s<I>,
+    to_eye: Vec3s<I>,
+    normal: Vec3s<I>,
+    lean: Vec3s<I>,
+    /// Hair area above per skin area.
+    above: F32s<I>,
 }

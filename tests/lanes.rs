@@ -1,0 +1,109 @@
+//! Numbers side by side against the same numbers one by one.
+
+use furrier::math::Vec3;
+use furrier::math::hash::Stream;
+use furrier::math::lanes::{self, F32s, Isa, Row, Scalar, Vec3Row, Vec3s, Work};
+use furrier::math::noise::{simplex, simplex_lanes};
+
+/// A function of lanes over many numbers.
+struct Over<'a, F> {
+    values: &'a [f32],
+    function: F,
+}
+
+/// What can be asked of lanes without naming how many there are.
+#[derive(Clone, Copy)]
+enum Function {
+    Exp,
+    Log2,
+    Pow(f32),
+    Acos,
+    Cos,
+    Whole,
+}
+
+impl Work for Over<'_, Function> {
+    type Output = Vec<f32>;
+
+    #[inline(always)]
+    fn run<I: Isa>(self) -> Vec<f32> {
+        let mut out = Vec::new();
+        for some in self.values.chunks(I::LANES) {
+            let mut row = Row::default();
+            row.0[..some.len()].copy_from_slice(some);
+            let x = F32s::<I>::of(&row);
+            let y = match self.function {
+                Function::Exp => x.exp_negative(),
+                Function::Log2 => x.log2(),
+                Function::Pow(power) => x.pow_unit(F32s::splat(power)),
+                Function::Acos => x.acos(),
+                Function::Cos => x.cos(),
+                Function::Whole => x.to_whole().signed_to_f32(),
+            };
+            out.extend(&y.row().0[..some.len()]);
+        }
+        out
+    }
+}
+
+fn values(low: f32, high: f32) -> Vec<f32> {
+    let mut random = Stream::new(7);
+    (0..4001).map(|_| low + (high - low) * random.unit()).chain([low, high]).collect()
+}
+
+/// Largest difference to `truth`, by the same bits on the widest lanes and on one.
+fn worst(function: Function, range: [f32; 2], truth: impl Fn(f64) -> f64) -> f64 {
+    let values = values(range[0], range[1]);
+    let wide = lanes::run(Over { values: &values, function });
+    let single = Over { values: &values, function }.run::<Scalar>();
+    assert!(wide.iter().zip(&single).all(|(a, b)| a.to_bits() == b.to_bits()), "lanes do not change results");
+    let difference = |(&x, &y): (&f32, &f32)| (f64::from(y) - truth(f64::from(x))).abs();
+    values.iter().zip(&wide).map(difference).fold(0.0, f64::max)
+}
+
+#[test]
+fn functions_are_within_a_few_units_of_the_last_place() {
+    assert!(worst(Function::Exp, [-20.0, 0.0], libm::exp) < 3e-7);
+    assert!(worst(Function::Log2, [1e-3, 8.0], libm::log2) < 2e-6);
+    assert!(worst(Function::Pow(8.0), [0.0, 1.0], |x| libm::pow(x, 8.0)) < 2e-6);
+    assert!(worst(Function::Acos, [-1.0, 1.0], libm::acos) < 2e-6);
+    assert!(worst(Function::Cos, [-3.2, 3.2], libm::cos) < 2e-6);
+    assert_eq!(worst(Function::Whole, [0.0, 8e6], libm::floor), 0.0);
+    assert!(worst(Function::Exp, [-20.0, 0.0], |x| libm::exp(x * 1.000_01)) > 3e-7, "a planted fault is seen");
+}
+
+#[test]
+fn what_is_no_number_becomes_the_lower_bound() {
+    let clamp = F32s::<Scalar>::splat(f32::NAN).within(0.25, 1.0);
+    assert_eq!(clamp.row().0[0], 0.25);
+}
+
+/// Noise at many points.
+struct Noise<'a>(&'a [Vec3]);
+
+impl Work for Noise<'_> {
+    type Output = Vec<f32>;
+
+    #[inline(always)]
+    fn run<I: Isa>(self) -> Vec<f32> {
+        let mut out = Vec::new();
+        for some in self.0.chunks(I::LANES) {
+            let mut row = Vec3Row::default();
+            some.iter().enumerate().for_each(|(lane, &p)| row.set(lane, p));
+            out.extend(&simplex_lanes(Vec3s::<I>::of(&row), 3).row().0[..some.len()]);
+        }
+        out
+    }
+}
+
+#[test]
+fn noise_in_lanes_has_the_bits_of_noise() {
+    let mut random = Stream::new(11);
+    let mut coordinate = || 2000.0 * (random.unit() - 0.5);
+    let points: Vec<Vec3> = (0..20_000).map(|_| Vec3::new(coordinate(), coordinate(), coordinate())).collect();
+    for (values, name) in [(lanes::run(Noise(&points)), "widest"), (Noise(&points).run::<Scalar>(), "one")] {
+        for (&p, value) in points.iter().zip(values) {
+            assert_eq!(value.to_bits(), simplex(p, 3).to_bits(), "{name} lane(s), at {p}");
+        }
+    }
+}
