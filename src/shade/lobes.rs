@@ -88,6 +88,20 @@ pub struct Prepared<R> {
     pub scale: R,
 }
 
+impl<R: Real> Prepared<R> {
+    /// The part along the hair, where (θ_i + θ_o)/2 is `half_rad`.
+    #[inline(always)]
+    fn along(&self, half_rad: R) -> R {
+        let x = half_rad - self.shift_rad;
+        self.albedo * (self.scale * x * x).exp()
+    }
+
+    #[inline(always)]
+    fn map<S>(&self, of: impl Fn(R) -> S) -> Prepared<S> {
+        Prepared { albedo: of(self.albedo), shift_rad: of(self.shift_rad), scale: of(self.scale) }
+    }
+}
+
 /// S, 1/sr, split by how often the hair's colour tints it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scattered<R> {
@@ -134,14 +148,9 @@ impl<R: Real> Lobes<R> {
 
     /// The same in other numbers.
     #[inline(always)]
-    pub fn map<S>(&self, of: impl Fn(R) -> S) -> Lobes<S> {
-        let prepared = |lobe: &Prepared<R>| Prepared {
-            albedo: of(lobe.albedo),
-            shift_rad: of(lobe.shift_rad),
-            scale: of(lobe.scale),
-        };
+    pub fn map<S>(&self, of: impl Fn(R) -> S + Copy) -> Lobes<S> {
         Lobes {
-            lobes: [prepared(&self.lobes[0]), prepared(&self.lobes[1]), prepared(&self.lobes[2])],
+            lobes: [self.lobes[0].map(of), self.lobes[1].map(of), self.lobes[2].map(of)],
             tt_azimuth_scale: of(self.tt_azimuth_scale),
             glint: of(self.glint),
             glint_angle_rad: of(self.glint_angle_rad),
@@ -162,10 +171,8 @@ impl<R: Real> Lobes<R> {
         let half_rad = half * (theta_in + theta_out);
         let cos_difference = (half * (theta_in - theta_out)).cos().max(R::of(1e-3));
         let spread = one / (cos_difference * cos_difference);
-        let [r, tt, trt] = self.lobes.map(|lobe| {
-            let x = half_rad - lobe.shift_rad;
-            lobe.albedo * (lobe.scale * x * x).exp() * spread
-        });
+        let [r, tt, trt] = &self.lobes;
+        let (r, tt, trt) = (r.along(half_rad) * spread, tt.along(half_rad) * spread, trt.along(half_rad) * spread);
         let azimuth_rad = angles.cos_azimuth.acos();
         let surround = (half * (one + angles.cos_azimuth)).max(R::of(0.0)).sqrt() * self.surround_norm;
         let behind = R::of(PI) - azimuth_rad;

@@ -31,11 +31,10 @@ impl<R: Real> Angles<R> {
     #[inline(always)]
     pub fn new(hair_light: R, hair_eye: R, light_eye: R) -> Self {
         let one = R::of(1.0);
-        let limit = |x: R| x.max(R::of(-1.0)).min(one);
-        let (sin_in, sin_out) = (limit(hair_light), limit(hair_eye));
+        let (sin_in, sin_out) = (cosine(hair_light), cosine(hair_eye));
         let across = ((one - sin_in * sin_in) * (one - sin_out * sin_out)).max(R::of(0.0)).sqrt();
         let cos_azimuth =
-            across.above(R::of(1e-6), limit((light_eye - sin_in * sin_out) / across.max(R::of(1e-6))), R::of(0.0));
+            across.above(R::of(1e-6), cosine((light_eye - sin_in * sin_out) / across.max(R::of(1e-6))), R::of(0.0));
         Self { sin_in, sin_out, cos_azimuth }
     }
 
@@ -72,6 +71,12 @@ impl Angles<f64> {
     pub fn of_dvectors(hair: DVec3, to_light: DVec3, to_eye: DVec3) -> Self {
         Self::new(hair.dot(to_light), hair.dot(to_eye), to_light.dot(to_eye))
     }
+}
+
+/// Within [−1, 1].
+#[inline(always)]
+fn cosine<R: Real>(x: R) -> R {
+    x.max(R::of(-1.0)).min(R::of(1.0))
 }
 
 /// The power to which a transmittance towards the light is raised for a channel of the given hair albedo.
