@@ -23,6 +23,8 @@ struct Walk {
     place: Place,
     // Length of the next step by the last one's density, m.
     expected_m: f32,
+    // How far the last change of prism took the march along, m.
+    push_m: f32,
     alive: bool,
     prism: Prism,
 }
@@ -44,7 +46,7 @@ struct Stepping {
 }
 
 fn walk_from(at_m: f32, triangle: u32, place: Place) -> Walk {
-    return Walk(at_m, triangle, place, 1e30, true, prism_of(triangle));
+    return Walk(at_m, triangle, place, 1e30, 0.0, true, prism_of(triangle));
 }
 
 // Density over its mean in the sub-element that holds a place. Prisms that are not stored are asked directly: the same
@@ -168,7 +170,10 @@ fn advance(walk: ptr<function, Walk>, origin_m: vec3<f32>, direction: vec3<f32>,
     (*walk).place = across_edge((*walk).place, side.which, beyond & 3u);
     (*walk).triangle = beyond >> 2u;
     (*walk).prism = prism_of(beyond >> 2u);
-    // The next prism is entered a hair's breadth inside, so that rounding does not send the march back.
-    (*walk).at_m += ON_SIDE * least_m;
+    // The next prism is entered a hair's breadth inside, so that rounding does not send the march back; ever deeper where
+    // folded prisms pass it to and fro.
+    let last_m = select(0.0, (*walk).push_m, max(length_m, 0.0) < least_m);
+    (*walk).push_m = max(2.0 * last_m, ON_SIDE * least_m);
+    (*walk).at_m += (*walk).push_m;
     return taken;
 }

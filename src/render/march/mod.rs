@@ -105,6 +105,7 @@ pub fn march<I: Isa, T: Traveller<I>>(volume: &Volume<'_>, stepping: &Stepping, 
         b: [Row::default(); 2],
         t: Row::default(),
         expected_m: Row::default(),
+        push_m: Row::default(),
         steps: [0; MOST],
         triangles: [0; MOST],
         prisms: Prisms::default(),
@@ -139,6 +140,8 @@ struct Flight<'v> {
     t: Row,
     /// Length of a step that has the wanted optical depth, by the last step's density, m.
     expected_m: Row,
+    /// How far the last change of prism took the march along, m.
+    push_m: Row,
     steps: [u32; MOST],
     triangles: [u32; MOST],
     prisms: Prisms,
@@ -175,6 +178,7 @@ fn board<'v, I: Isa, T: Traveller<I>>(
     flight.far_m.0[lane] = journey.far_m;
     flight.at_m.0[lane] = journey.start.at_m;
     flight.expected_m.0[lane] = f32::INFINITY;
+    flight.push_m.0[lane] = 0.0;
     flight.steps[lane] = 0;
     flight.enter(volume, lane, journey.start.triangle, journey.start.place);
     traveller.enter(lane, journey.start.triangle);
@@ -230,7 +234,7 @@ fn advance<'v, I: Isa, T: Traveller<I>>(
     flight.at_m = at_m.row();
     flight.b = [places.b[0].row(), places.b[1].row()];
     flight.t = places.t.row();
-    let (side, least_m) = (side.row(), least_m.row());
+    let (side, least_m, walked_m) = (side.row(), least_m.row(), walked_m.row());
     for lane in 0..I::LANES {
         if flight.on >> lane & 1 == 0 {
             continue;
@@ -242,8 +246,12 @@ fn advance<'v, I: Isa, T: Traveller<I>>(
                 Some((triangle, place)) => {
                     flight.enter(volume, lane, triangle, place);
                     traveller.enter(lane, triangle);
-                    // The next prism is entered a hair's breadth inside, so that rounding does not send the march back.
-                    flight.at_m.0[lane] += ON_SIDE * least_m.0[lane];
+                    // The next prism is entered a hair's breadth inside, so that rounding does not send the march back;
+                    // ever deeper where folded prisms pass it to and fro.
+                    let stuck = walked_m.0[lane] < least_m.0[lane];
+                    let last_m = if stuck { flight.push_m.0[lane] } else { 0.0 };
+                    flight.push_m.0[lane] = (2.0 * last_m).max(ON_SIDE * least_m.0[lane]);
+                    flight.at_m.0[lane] += flight.push_m.0[lane];
                 }
                 None => ended = true,
             }
