@@ -36,7 +36,7 @@ impl Default for Resolution {
     fn default() -> Self {
         Self {
             layers: 16,
-            subelement_px: 3.0,
+            subelement_px: 1.5,
             most_subdivisions: 7,
             shadow_coarser: 2,
             pattern: Some(Pattern::default()),
