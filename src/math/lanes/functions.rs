@@ -56,7 +56,7 @@ impl<I: Isa> F32s<I> {
     pub fn acos(self) -> Self {
         let x = self.abs().min(Self::splat(1.0));
         let mut sum = Self::splat(-0.001_262_491_1);
-        for c in [0.006_670_09, -0.017_088_126, 0.030_891_88, -0.050_174_303, 0.088_978_99, -0.214_598_8, 1.570_796_3] {
+        for c in [0.006_670_09, -0.017_088_126, 0.030_891_88, -0.050_174_303, 0.088_978_99, -0.214_598_8, FRAC_PI_2] {
             sum = sum * x + c;
         }
         let right = (Self::splat(1.0) - x).sqrt() * sum;
