@@ -126,7 +126,7 @@ fn worst_tangent_deg(hair: &TileHair, lean_deg: f32, fault: Mat3) -> f32 {
     let stack = Stack::new(&tile);
     let truth = strand_directions(hair, 15);
     let most = truth.iter().map(|t| t.length()).fold(0.0, f32::max);
-    let view = View { direction: Vec3::NEG_Z, skin_from_tile: Mat3::IDENTITY, pixel: 1.0 };
+    let view = View::new(Vec3::NEG_Z, Mat3::IDENTITY, 1.0);
     let worn = leaning(lean_deg);
     let angle = |(slab, truth): (usize, &Vec3)| {
         let mean = worn * (fault * stack.fetch(slab + 1, Vec2::ZERO, &view).tangent);
@@ -156,7 +156,7 @@ fn mean_tangents_are_those_of_the_strands() {
 fn layer_shift(tile: &furrier::data::coat::Tile, layer: usize, worn: Mat3) -> (i32, f32) {
     let size = tile.shells.size as i32;
     let stack = Stack::new(tile);
-    let view = View { direction: Vec3::NEG_Z, skin_from_tile: worn, pixel: 1.0 / size as f32 };
+    let view = View::new(Vec3::NEG_Z, worn, 1.0 / size as f32);
     let picture = |layer: usize| -> Vec<f32> {
         let texel = |i: i32| {
             let uv = Vec2::new((i % size) as f32 + 0.5, (i / size) as f32 + 0.5) / size as f32;
@@ -198,7 +198,7 @@ fn stack_coverage(tile: &furrier::data::coat::Tile, theta_deg: f32, worn: Mat3, 
     for i in 0..32 * 32 {
         let azimuth = (i % 8) as f32 * std::f32::consts::FRAC_PI_4;
         let direction = Vec3::new(sin * azimuth.cos(), sin * azimuth.sin(), -cos);
-        let view = View { direction, skin_from_tile: worn, pixel };
+        let view = View::new(direction, worn, pixel);
         let uv = Vec2::new((i % 32) as f32 + 0.5, (i / 32) as f32 + 0.5) / 32.0;
         let depth = density * stack.gain(&view) * stack.optical_depth(uv, &view);
         sum += 1.0 - (-depth).exp();

@@ -258,6 +258,7 @@ impl Furred {
             positions_m: self.positions_m.clone(),
             normals: self.normals.clone(),
             offsets_m: self.offsets_m.clone(),
+            axes: vec![],
             uv: self.uv.as_slice().into(),
             tint: self.tint.as_slice().into(),
             triangles: &self.triangles,

@@ -69,6 +69,7 @@ pub fn coat_for(asset: &Asset) -> Coat {
             uv: (0..n).map(uv).collect(),
             patch: (0..n as u32).map(|v| v % 3).collect(),
             offset: (0..n).map(|v| part.local_offset(v, mesh.normals[v] * length, 1.0)).collect(),
+            axis: (0..n).map(|v| part.local_offset(v, mesh.normals[v].any_orthonormal_vector(), 1.0)).collect(),
             tint: (0..n).map(|v| Vec4::new(1.0, 0.5, (v % 7) as f32 / 7.0, 1.0)).collect(),
             triangles: mesh.triangles.clone(),
             fins: mesh.triangles.iter().map(fin).collect(),

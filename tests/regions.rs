@@ -150,11 +150,7 @@ fn halfway_the_optical_depth_lies_between_the_tiles() {
     let folder = tempfile::tempdir().unwrap();
     let (_, coat) = baked(folder.path());
     let stacks: Vec<_> = coat.tiles.iter().map(Stack::new).collect();
-    let view = cpu::View {
-        direction: Vec3::new(0.6, 0.0, -0.8),
-        skin_from_tile: furrier::math::Mat3::IDENTITY,
-        pixel: 1.0 / 64.0,
-    };
+    let view = cpu::View::new(Vec3::new(0.6, 0.0, -0.8), furrier::math::Mat3::IDENTITY, 1.0 / 64.0);
     for i in 0..64 {
         let uv = furrier::math::Vec2::new((i % 8) as f32, (i / 8) as f32) / 8.0;
         let [a, b] = [0, 1].map(|tile| stacks[tile].gain(&view) * stacks[tile].optical_depth(uv, &view));

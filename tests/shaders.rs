@@ -90,7 +90,7 @@ fn structs_lie_as_in_rust() {
         (&shell, "View", in_rust!(ViewUniform { clip_from_world, eye, ambient, light_count, lights })),
         (&shell, "Tile", in_rust!(TileUniform { edge_m, height_m, size, layers, mips, tinted })),
         (&shell, "Mip", in_rust!(Mip { gains, inverse_scale_m })),
-        (&shell, "CoatVertex", in_rust!(CoatVertex { position_m, u, offset_m, v, normal, tint })),
+        (&shell, "CoatVertex", in_rust!(CoatVertex { position_m, u, offset_m, v, normal, axis, tint })),
         (&fin, "FinEdge", in_rust!(FinInstance { ends, u, thickness })),
     ] {
         assert_eq!(in_shader(module, name), Some(rust), "{name}");

@@ -23,6 +23,7 @@ fn dressed(asset: &Asset, tile: Tile) -> Coat {
             uv: mesh.positions_m.iter().map(uv).collect(),
             patch: vec![0; count],
             offset: (0..count).map(|v| part.local_offset(v, normals[v] * tile.height_m, 1.0)).collect(),
+            axis: vec![Vec3::ZERO; count],
             tint: vec![Vec4::ONE; count],
             triangles: part.stored.triangles.clone(),
             fins: vec![],

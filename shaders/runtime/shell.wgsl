@@ -2,7 +2,7 @@
 // where the ray passes its middle.
 #import furrier::view::{view, ray_direction}
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
-#import furrier::coat::{CoatVertex, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, frame, ray_in_tile,
+#import furrier::coat::{CoatVertex, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
     lateral, path_through_slab, footprint, fetch, run_through_slab, gain, decode_medium, fin_share}
 
 // Which side of the shells this pass draws: the far one first, outer to inner, then the near one, inner to outer.
@@ -35,6 +35,9 @@ struct Varyings {
     @location(7) @interpolate(flat) x_turn: vec3<f32>,
     @location(8) @interpolate(flat) y_turn: vec3<f32>,
     @location(9) @interpolate(flat) layer: u32,
+    @location(10) axis: vec3<f32>,
+    // Square root of the triangle's area at this height over that on the skin.
+    @location(11) @interpolate(flat) spread: f32,
 }
 
 @vertex
@@ -68,6 +71,9 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
     out.x_turn = (turn_b * uv_c.y - turn_c * uv_b.y) * scale;
     out.y_turn = (turn_c * uv_b.x - turn_b * uv_c.x) * scale;
     out.layer = layer;
+    out.axis = own.axis;
+    let foot = cross(b.position_m - a.position_m, c.position_m - a.position_m);
+    out.spread = sqrt(clamp(length(cross(edge_b, edge_c)) / max(length(foot), 1e-30), 0.01, 100.0));
 
     // Which side is seen follows from the offsets, not from the winding, so mirrored parts need no care.
     let face = cross(edge_b, edge_c);
@@ -90,20 +96,27 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     // Axes in the plane of the smooth normal, or facets would show.
     let x_axis = in.x_axis - normal * dot(normal, in.x_axis);
     let y_axis = in.y_axis - normal * dot(normal, in.y_axis);
-    let at = frame(x_axis, y_axis, in.offset_m / tile.height_m);
+    let up = in.offset_m / tile.height_m;
+    let texture = frame(x_axis, y_axis, up);
+    var at = texture;
+    if tile.tinted > 0.5 {
+        at = hair_frame(in.axis, x_axis, normal, in.spread, up);
+    }
     let world_ray = ray_direction(in.position_m);
     let ray = ray_in_tile(at, world_ray);
+    // The same ray as the texture is fetched along it.
+    let sweep = Ray(vec3((texture.tile_from_world * world_ray).xy, ray.direction.z), ray.cosine, ray.fall);
     let slab_m = tile.height_m / f32(tile.layers - 1u);
 
     // The surface bends away from the ray by half its normal curvature along it, measured in metres of the tile.
-    let sideways = x_axis * ray.direction.x + y_axis * ray.direction.y;
-    let turn = in.x_turn * ray.direction.x + in.y_turn * ray.direction.y;
+    let sideways = x_axis * sweep.direction.x + y_axis * sweep.direction.y;
+    let turn = in.x_turn * sweep.direction.x + in.y_turn * sweep.direction.y;
     let bend_per_m = 0.5 * dot(turn, sideways) / max(dot(normal, at.world_from_tile[2]), 0.05);
     let path_m = path_through_slab(ray, slab_m, bend_per_m);
     let inwards = select(-0.5, 0.5, NEAR_SIDE) * path_m;
-    let uv = in.uv + inwards * ray.direction.xy / tile.edge_m;
+    let uv = in.uv + inwards * sweep.direction.xy / tile.edge_m;
 
-    let run = run_through_slab(ray, path_m, slab_m, slopes[in.layer]);
+    let run = run_through_slab(sweep, path_m, slab_m, slopes[in.layer]);
     let spot = footprint(uv_dx, uv_dy, run, select(FAR_TAPS, NEAR_TAPS, NEAR_SIDE));
     let layer = i32(in.layer);
     let medium = decode_medium(fetch(medium_texture, uv, layer, spot), spot.level);

@@ -34,6 +34,8 @@ struct CoatVertex {
     offset_m: vec3<f32>,
     v: f32,
     normal: vec3<f32>,
+    // The tile's x axis on the skin, of any length; 0 where it is the texture's own.
+    axis: vec3<f32>,
     // Colour factor and density factor.
     tint: vec4<f32>,
 }
@@ -64,6 +66,15 @@ fn frame(x_axis: vec3<f32>, y_axis: vec3<f32>, z_axis: vec3<f32>) -> Frame {
     let scale = select(-1.0, 1.0, signed_volume >= 0.0) / volume;
     let rows = mat3x3(cross(y_axis, z_axis), cross(z_axis, x_axis), xy) * scale;
     return Frame(mat3x3(x_axis, y_axis, z_axis), transpose(rows), volume);
+}
+
+// The frame of hair that was sampled on a square: it stands along `axis` in the plane of `normal`, whichever way its texture lies
+// there, so that stretch and turn of a patch show in its picture alone. `spread` is how much wider the skin is at this
+// height, as a length.
+fn hair_frame(axis: vec3<f32>, texture_axis: vec3<f32>, normal: vec3<f32>, spread: f32, z_axis: vec3<f32>) -> Frame {
+    let along = axis - normal * dot(normal, axis);
+    let x_axis = normalize(select(texture_axis, along, dot(along, along) > 1e-6 * dot(axis, axis)));
+    return frame(spread * x_axis, spread * cross(normal, x_axis), z_axis);
 }
 
 // A direction in the tile: what 1 m of it in the world becomes, its z kept away from 0.

@@ -9,9 +9,10 @@ pub mod units;
 
 use crate::asset::coat::{Fallback, refuse_second, write_coat};
 use crate::asset::{self, Asset, Part};
+use crate::coat::axes::axes;
 use crate::coat::judge::{Effort, Row, coverage_table};
 use crate::coat::measures::Measures;
-use crate::coat::seams::before_after;
+use crate::coat::seams::{WINDOWS, before_after};
 use crate::coat::tile::{TileHair, TileRecipe, bake as bake_tile, leaning};
 use crate::coat::wear::wear;
 use crate::data::coat::{Blend, Coat, CoatPrimitive, Tile};
@@ -255,7 +256,8 @@ impl Task<'_> {
     fn wear(&self, part: usize, groomed: &Groomed, patches: &Patches, tile: &Tile) -> CoatPrimitive {
         let at = &self.asset.parts[part];
         let local = |v, offset_m| at.local_offset(v, offset_m, self.scale.metres_per_unit);
-        let worn = wear(&groomed.mesh, &groomed.fields, patches, tile, self.seed(part), local);
+        let axes = axes(&groomed.mesh, &groomed.fields.direction, patches);
+        let worn = wear(&groomed.mesh, &groomed.fields, &axes, patches, tile, self.seed(part), local);
         CoatPrimitive { mesh: at.mesh, primitive: at.primitive, ..worn }
     }
 }
@@ -305,7 +307,10 @@ fn dress(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: &mut 
         let ms = start.elapsed().as_secs_f64() * 1e3;
         warnings.extend(groomed.notes.iter().chain(&patches.stats.warnings).cloned());
         let seams = request.judge.then(|| {
-            steps.run("judge seams", || before_after(&groomed.mesh, &groomed.offsets(), &patches, &tiles[0]).into())
+            steps.run("judge seams", || {
+                let axes = axes(&groomed.mesh, &groomed.fields.direction, &patches);
+                before_after(&groomed.mesh, &groomed.offsets(), &axes, &patches, &tiles[0], WINDOWS).into()
+            })
         });
         let primitives = if others.is_empty() {
             vec![steps.run("wear", || task.wear(part, &groomed, &patches, &tiles[0]))]

@@ -3,6 +3,7 @@
 use super::skin::{self, Groomed};
 use super::{Steps, Task};
 use crate::asset::image;
+use crate::coat::axes::axes;
 use crate::coat::wear::wear;
 use crate::data::coat::{Blend, CoatPrimitive, Tile};
 use crate::data::fields::Fields;
@@ -50,6 +51,7 @@ pub(super) fn wear_all(
         let groomed = steps.run("groom", || skin::groom(task.asset, at, preset, task.scale.metres_per_unit))?;
         fields.push(groomed.fields);
     }
+    let axes = axes(&own.mesh, &own.fields.direction, patches);
     let mixed = Mixed::new(&fields, tiles, &shares);
     // Triangles by what they wear.
     let mut groups: BTreeMap<(usize, Option<usize>), Vec<usize>> = BTreeMap::new();
@@ -68,7 +70,7 @@ pub(super) fn wear_all(
         let fields = mixed.for_tile(&tiles[*tile]);
         let subset = subset(patches, triangles, tiles[0].edge_m / tiles[*tile].edge_m);
         let local = |v, offset_m| at.local_offset(v, offset_m, task.scale.metres_per_unit);
-        let worn = wear(&own.mesh, &fields, &subset, &tiles[*tile], task.seed(part), local);
+        let worn = wear(&own.mesh, &fields, &axes, &subset, &tiles[*tile], task.seed(part), local);
         let weight = |second: usize, v: u32| {
             let share = &shares[v as usize];
             let both = share[*tile] + share[second];

@@ -69,7 +69,7 @@ fn row(
         let rays = Rays::Tile { edge_m, top_m, direction, size: [n, n], supersampling: effort.supersampling };
         let film = caster.render(&rays, DepthRange { near_m: 0.0, far_m: top_m / -direction.z });
         truth.extend(film.alpha);
-        let view = View { direction, skin_from_tile, pixel };
+        let view = View::new(direction, skin_from_tile, pixel);
         let shift = direction.truncate() / -direction.z * top_m / tile.edge_m;
         for i in 0..n * n {
             let uv = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) * pixel + shift;
@@ -90,7 +90,7 @@ fn row(
 
 /// The usual shells: every texel's opacity is what it is from straight above, fetched without widening.
 fn constant_coverage(stack: &Stack<'_>, tile: &Tile, uv: Vec2, view: &View) -> f32 {
-    let above = View { direction: Vec3::NEG_Z, skin_from_tile: Mat3::IDENTITY, pixel: view.pixel };
+    let above = View::new(Vec3::NEG_Z, Mat3::IDENTITY, view.pixel);
     let gain = stack.gain(&above);
     let d = view.skin_from_tile.inverse() * view.direction;
     let slope = Vec2::new(d.x, d.y) / d.z;

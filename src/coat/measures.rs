@@ -107,7 +107,7 @@ impl Measures {
         }
     }
 
-    /// Measures what a file's primitive wears. The hair's direction is that of its offsets along the skin.
+    /// Measures what a file's primitive wears. The hair's direction is the axis that the file gives it.
     ///
     /// # Errors
     /// As [`Part::mesh`].
@@ -118,10 +118,8 @@ impl Measures {
         for &triangle in &triangles {
             *times.entry(sorted(triangle)).or_default() += 1;
         }
-        let offset = offsets(part, worn, tile, metres_per_unit);
-        let normals = skin.smooth_normals();
-        let direction: Vec<Vec3> =
-            offset.iter().zip(&normals).map(|(o, &n)| o.reject_from_normalized(n).normalize_or_zero()).collect();
+        let offset = worlds(part, worn, &worn.offset, metres_per_unit / f64::from(tile.height_m));
+        let axis = worlds(part, worn, &worn.axis, metres_per_unit);
         let mesh = Mesh { triangles, ..skin };
         let patches = Patches {
             base_vertex: worn.base_vertex.clone(),
@@ -130,13 +128,14 @@ impl Measures {
             triangles: worn.triangles.clone(),
             ..Patches::default()
         };
-        let mut stats = patch::measure(&mesh, &direction, tile.edge_m, &patches);
+        let mut stats = patch::measure(&mesh, &axis, tile.edge_m, &patches);
         let mut used = worn.patch.clone();
         used.sort_unstable();
         used.dedup();
         stats.patches = used.len();
         let tiled = tile.sampled == Sampled::Square;
-        let seams = tiled.then(|| SeamRows { worn: look(&mesh, &offset, &patches, tile).into(), by_chance: None });
+        let seams =
+            tiled.then(|| SeamRows { worn: look(&mesh, &offset, &axis, &patches, tile).into(), by_chance: None });
         let count = |wanted: fn(usize) -> bool| times.values().filter(|&&n| wanted(n)).count();
         Ok(Self {
             faces: count(|n| n == 1),
@@ -166,12 +165,11 @@ fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
     triangle
 }
 
-/// Offset of each skin vertex over the stack's height, world axes; zero where none is worn.
-fn offsets(part: &Part, worn: &CoatPrimitive, tile: &Tile, metres_per_unit: f64) -> Vec<Vec3> {
-    let mut offset = vec![Vec3::ZERO; part.vertices()];
-    for (&base, local) in worn.base_vertex.iter().zip(&worn.offset) {
-        let world_m = part.world_from_local(base as usize) * local.as_dvec3() * metres_per_unit;
-        offset[base as usize] = (world_m / f64::from(tile.height_m)).as_vec3();
+/// What vectors of coat vertices are at their skin vertices in world axes, times `scale`; zero where none is worn.
+fn worlds(part: &Part, worn: &CoatPrimitive, vectors: &[Vec3], scale: f64) -> Vec<Vec3> {
+    let mut world = vec![Vec3::ZERO; part.vertices()];
+    for (&base, local) in worn.base_vertex.iter().zip(vectors) {
+        world[base as usize] = (part.world_from_local(base as usize) * local.as_dvec3() * scale).as_vec3();
     }
-    offset
+    world
 }

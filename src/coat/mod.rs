@@ -1,6 +1,7 @@
 //! Floor 5: the product. Shells and fins are baked by asking [`crate::render`] and judged by asking [`crate::runtime`].
 
 pub mod atlas;
+pub mod axes;
 pub mod fins;
 pub mod judge;
 pub mod measures;

@@ -8,8 +8,8 @@ use serde::Serialize;
 pub const SCREEN: (f64, f64) = (1080.0, 40.0);
 /// From this many pixels between neighbouring shells on, they are seen as layers.
 const GAP_PIXELS: f64 = 2.0;
-/// Graphics memory of a coat vertex: base vertex, patch, UV, offset and tint.
-const VERTEX_BYTES: usize = 4 + 4 + 8 + 12 + 16;
+/// Graphics memory of a coat vertex: base vertex, patch, UV, offset, axis and tint.
+const VERTEX_BYTES: usize = 4 + 4 + 8 + 12 + 12 + 16;
 /// Graphics memory of a fin: four vertex indices, an interval and a thickness.
 const FIN_BYTES: usize = 16 + 8 + 4;
 

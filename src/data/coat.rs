@@ -103,6 +103,9 @@ pub struct CoatPrimitive {
     pub patch: Vec<u32>,
     /// Root to the top of the stack, in the base primitive's own space and units.
     pub offset: Vec<Vec3>,
+    /// The tile's x axis along the skin, in the base primitive's own space: a metre of the world in the rest pose. It is the
+    /// same on both sides of a seam, however patches lie there; zero where it is the texture's own.
+    pub axis: Vec<Vec3>,
     /// Colour factor (linear RGB) and density factor.
     pub tint: Vec<Vec4>,
     /// Coat vertex indices, counter-clockwise from outside.
@@ -144,6 +147,7 @@ impl CoatPrimitive {
             uv: old.iter().map(|&v| self.uv[v]).collect(),
             patch: old.iter().map(|&v| self.patch[v]).collect(),
             offset: old.iter().map(|&v| self.offset[v]).collect(),
+            axis: old.iter().map(|&v| self.axis[v]).collect(),
             tint: old.iter().map(|&v| self.tint[v]).collect(),
             triangles: triangles.iter().map(|t| t.map(of)).collect(),
             fins: self.fins.iter().filter(whole).map(moved).collect(),

@@ -8,8 +8,8 @@ pub mod sampling;
 pub mod sparse;
 
 pub use glam::{
-    DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4, I64Vec3, IVec2, Mat3, Mat4, Quat, UVec2, UVec3, Vec2, Vec3,
-    Vec4,
+    DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4, I64Vec3, IVec2, Mat2, Mat3, Mat4, Quat, UVec2, UVec3, Vec2,
+    Vec3, Vec4,
 };
 
 /// Any unit vector at a right angle to the unit vector `n`, and the third axis: (t, b) with t × b = n.

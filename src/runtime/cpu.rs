@@ -2,11 +2,12 @@
 //!
 //! A tile is worn sheared: a point (x, y, z) of the tile sits at x·X + y·Y + z·O of the skin's frame, where X and Y are
 //! unit tangents and O is the coat's offset over the stack's height. Hair keeps its diameter under that map, so the
-//! medium changes with it (`docs/steps/shells.md`).
+//! medium changes with it (`docs/steps/shells.md`). X is the skin's own direction, whichever way the texture lies there:
+//! where a patch is stretched or turned, its picture is, and not the medium.
 
 use crate::data::coat::{GAIN_ANGLES_DEG, Sampled, ShellStack, Tile};
 use crate::data::image::linear_from_srgb;
-use crate::math::{Mat3, Vec2, Vec3};
+use crate::math::{Mat2, Mat3, Vec2, Vec3};
 use crate::shade::light::luminance;
 
 /// Steepest view that the law is evaluated at: cos 87°.
@@ -44,11 +45,24 @@ pub struct View {
     pub direction: Vec3,
     /// The skin's frame from the tile's: columns X, Y, O.
     pub skin_from_tile: Mat3,
+    /// What a step along X and Y is in the texture: the identity where the texture is neither stretched nor turned.
+    pub texture_from_tile: Mat2,
     /// Edge of the pixel on the skin, in tile edges.
     pub pixel: f32,
 }
 
 impl View {
+    /// A texture that lies as the hair does.
+    pub fn new(direction: Vec3, skin_from_tile: Mat3, pixel: f32) -> Self {
+        Self { direction, skin_from_tile, texture_from_tile: Mat2::IDENTITY, pixel }
+    }
+
+    /// The ray's slope in the texture: sideways run per height.
+    fn slope(&self) -> Vec2 {
+        let d = self.in_tile();
+        self.texture_from_tile * Vec2::new(d.x, d.y) / d.z
+    }
+
     /// The ray's direction in tile space, at least as steep as the law allows; not unit: its z counts path per height.
     fn in_tile(&self) -> Vec3 {
         let d = self.skin_from_tile.inverse() * self.direction;
@@ -114,17 +128,14 @@ impl<'a> Stack<'a> {
 
     /// What a shader fetches for slab `layer` (1 … layers − 1) where the view ray passes the tile's plane z = 0 at `uv`.
     pub fn fetch(&self, layer: usize, uv: Vec2, view: &View) -> Texel {
-        let d = view.in_tile();
-        let slope = Vec2::new(d.x, d.y) / d.z;
+        let slope = view.slope();
         let middle_m = (layer as f32 - 0.5) * self.slab_m();
         self.fetch_middle(layer, uv + slope * middle_m / self.tile.edge_m, view)
     }
 
     /// What a shader fetches for slab `layer` where the view ray passes the slab's middle at `uv`.
     pub fn fetch_middle(&self, layer: usize, uv: Vec2, view: &View) -> Texel {
-        let d = view.in_tile();
-        let slope = Vec2::new(d.x, d.y) / d.z;
-        let run = (slope - self.tile.shells.slopes[layer]) * self.slab_m() / self.tile.edge_m;
+        let run = (view.slope() - self.tile.shells.slopes[layer]) * self.slab_m() / self.tile.edge_m;
         self.fetch_along(layer, uv, run, view.pixel)
     }
 
@@ -192,8 +203,7 @@ impl<'a> Stack<'a> {
     /// Fetches take the nearest texel of the nearest mip, not eight: means over many pixels are what this is for.
     pub fn brightness(&self, uv: Vec2, view: &View, density: f32) -> f32 {
         let gain = self.gain(view) * density;
-        let d = view.in_tile();
-        let (slope, slab_m) = (Vec2::new(d.x, d.y) / d.z, self.slab_m());
+        let (slope, slab_m) = (view.slope(), self.slab_m());
         let per_edge = slab_m / self.tile.edge_m;
         let (mut through, mut seen) = (1.0, 0.0);
         for layer in (1..self.tile.shells.layers as usize).rev() {

@@ -55,6 +55,8 @@ pub struct Fur<'a> {
     pub normals: Vec<Vec3>,
     /// Root to the top of the stack, m.
     pub offsets_m: Vec<Vec3>,
+    /// The tile's x axis along the skin, of any length; none where it is the texture's own.
+    pub axes: Vec<Vec3>,
     /// Texture coordinates in tiles.
     pub uv: Cow<'a, [Vec2]>,
     /// Colour factor (linear RGB) and density factor.

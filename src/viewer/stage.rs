@@ -59,17 +59,15 @@ pub fn points_m(scene: &Scene<'_>) -> Vec<Vec3> {
 /// What a coat primitive's shells and fins are, with its first tile alone.
 pub(super) fn fur<'a>(posed: &Posed, worn: &'a CoatPrimitive) -> Fur<'a> {
     let at = |list: &[Vec3]| worn.base_vertex.iter().map(|&v| list[v as usize]).collect();
-    let offsets_m = worn
-        .base_vertex
-        .iter()
-        .zip(&worn.offset)
-        .map(|(&v, &offset)| posed.world_from_offset[v as usize] * offset)
-        .collect();
+    let turned = |list: &[Vec3]| {
+        worn.base_vertex.iter().zip(list).map(|(&v, &o)| posed.world_from_offset[v as usize] * o).collect()
+    };
     Fur {
         tile: worn.tile,
         positions_m: at(&posed.positions_m),
         normals: at(&posed.normals),
-        offsets_m,
+        offsets_m: turned(&worn.offset),
+        axes: turned(&worn.axis),
         uv: Cow::from(&worn.uv),
         tint: Cow::from(&worn.tint),
         triangles: &worn.triangles,

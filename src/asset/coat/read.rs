@@ -75,6 +75,7 @@ fn read_primitive(asset: &Asset, at: &At<'_>, worn: &mut CoatPrimitive, mirrored
     worn.patch = integers(&attributes, "PATCH", 1)?;
     worn.uv = floats(&attributes, "TEXCOORD_0", 2)?.chunks_exact(2).map(Vec2::from_slice).collect();
     worn.offset = floats(&attributes, "OFFSET", 3)?.chunks_exact(3).map(Vec3::from_slice).collect();
+    worn.axis = floats(&attributes, "AXIS", 3)?.chunks_exact(3).map(Vec3::from_slice).collect();
     worn.tint = floats(&attributes, "TINT", 4)?.chunks_exact(4).map(Vec4::from_slice).collect();
     let indices = integers(at, "indices", 1)?;
     worn.triangles = indices.as_chunks::<3>().0.to_vec();

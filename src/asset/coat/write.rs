@@ -189,7 +189,8 @@ pub(super) fn check(primitive: &CoatPrimitive, part: &Part, tiles: &[Tile]) -> R
             .with_found("something else")
             .with_expected(expected))
     };
-    let lengths = [primitive.uv.len(), primitive.patch.len(), primitive.offset.len(), primitive.tint.len()];
+    let lengths =
+        [primitive.uv.len(), primitive.patch.len(), primitive.offset.len(), primitive.axis.len(), primitive.tint.len()];
     if lengths.iter().any(|&length| length != n) || n == 0 {
         return fault("attributes", "one entry per coat vertex, and at least one");
     }
@@ -219,6 +220,7 @@ pub(super) fn check(primitive: &CoatPrimitive, part: &Part, tiles: &[Tile]) -> R
     }
     let finite = primitive.uv.iter().all(|uv| uv.is_finite())
         && primitive.offset.iter().all(|o| o.is_finite())
+        && primitive.axis.iter().all(|x| x.is_finite())
         && primitive.tint.iter().all(|t| t.is_finite())
         && primitive.fins.iter().all(|f| f.u.iter().chain([&f.thickness]).all(|u| u.is_finite()));
     if finite { Ok(()) } else { fault("attributes", "finite numbers") }
@@ -236,6 +238,7 @@ fn write_primitive(document: &mut Document, primitive: &CoatPrimitive, mirrored:
             "TEXCOORD_0": document.push_vec2(&primitive.uv, Use::Other),
             "PATCH": document.push_integers(&primitive.patch, 1, Use::Other),
             "OFFSET": document.push_vec3(&primitive.offset, Use::Other),
+            "AXIS": document.push_vec3(&primitive.axis, Use::Other),
             "TINT": document.push_vec4(&primitive.tint, Use::Other),
         },
     });

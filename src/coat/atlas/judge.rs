@@ -2,6 +2,7 @@
 //! that grow there and through the shells as they lie over them.
 
 use super::flatten::axes;
+use crate::coat::axes::Stand;
 use crate::coat::judge::Row;
 use crate::coat::wear::offset_over_height;
 use crate::data::coat::{Sampled, Tile};
@@ -207,7 +208,7 @@ impl Judge<'_> {
     fn depths(&self, ray: &Ray, far_m: f32, triangles: &[usize]) -> [f32; 2] {
         let Worn { mesh, fields, patches, tile, .. } = *self.worn;
         let pixel = 1.0 / tile.shells.size as f32;
-        let above = View { direction: Vec3::NEG_Z, skin_from_tile: Mat3::IDENTITY, pixel };
+        let above = View::new(Vec3::NEG_Z, Mat3::IDENTITY, pixel);
         let mut depths = [0.0; 2];
         for &t in triangles {
             let corners = mesh.triangles[t].map(|v| v as usize);
@@ -220,7 +221,18 @@ impl Judge<'_> {
                 let Some(b) = crossing(shell_m, ray, far_m) else { continue };
                 let Some([x, y]) = axes(shell_m, uv.map(|p| p * tile.edge_m)) else { continue };
                 let z = offsets[0] * b.x + offsets[1] * b.y + offsets[2] * b.z;
-                let view = View { direction: ray.direction, skin_from_tile: Mat3::from_cols(x, y, z), pixel };
+                let view = match tile.sampled {
+                    Sampled::Skin => View::new(ray.direction, Mat3::from_cols(x, y, z), pixel),
+                    Sampled::Square => {
+                        let around = |of: [Vec3; 3]| of[0] * b.x + of[1] * b.y + of[2] * b.z;
+                        let twice_area = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a);
+                        let (here, foot) = (twice_area(shell_m), twice_area(skin_m));
+                        let spread = (here.length() / foot.length().max(f32::MIN_POSITIVE)).sqrt();
+                        let axis = around(corners.map(|v| fields.direction[v]));
+                        let stand = Stand { normal: here.normalize_or_zero(), axis, up: z, texture: [x, y], spread };
+                        stand.view(ray.direction, pixel)
+                    }
+                };
                 let at: Vec2 = uv[0] * b.x + uv[1] * b.y + uv[2] * b.z;
                 let density = match tile.sampled {
                     Sampled::Skin => 1.0,

@@ -83,11 +83,7 @@ pub fn fit(tile: &Tile, truth: &[f64; 9], skin_from_tile: Mat3) -> Vec<[f32; 9]>
 fn optical_depths(stack: &Stack<'_>, size: u32, theta_deg: f32, skin_from_tile: Mat3) -> Vec<f32> {
     let n = along_edge(theta_deg, (size as usize).clamp(8, SPOTS));
     let views: Vec<View> = directions(theta_deg)
-        .map(|in_tile| View {
-            direction: (skin_from_tile * in_tile).normalize(),
-            skin_from_tile,
-            pixel: 1.0 / size.max(1) as f32,
-        })
+        .map(|in_tile| View::new((skin_from_tile * in_tile).normalize(), skin_from_tile, 1.0 / size.max(1) as f32))
         .collect();
     (0..n * n)
         .into_par_iter()

@@ -115,6 +115,9 @@ pub struct CoatVertex {
     /// Skin normal.
     pub normal: [f32; 3],
     pub(super) _pad0: f32,
+    /// The tile's x axis on the skin.
+    pub axis: [f32; 3],
+    pub(super) _pad1: f32,
     /// Colour and density factors.
     pub tint: [f32; 4],
 }
@@ -130,6 +133,8 @@ impl CoatVertex {
                 v: fur.uv[i].y,
                 normal: fur.normals[i].to_array(),
                 _pad0: 0.0,
+                axis: fur.axes.get(i).map_or([0.0; 3], |axis| axis.to_array()),
+                _pad1: 0.0,
                 tint: fur.tint[i].to_array(),
             })
             .collect()
