@@ -40,9 +40,15 @@ fn table(guard: bool, shape: Shape, lean_deg: f32) -> Vec<Row> {
     println!("gains {:?} {:?}", tile.shells.gains[0], tile.shells.gains[3]);
     let rows = coverage_table(&hair, &tile, leaning(lean_deg), EFFORT);
     println!("guard {guard} lean {lean_deg} bend {}  ({:.2} s)", shape.bend_deg, start.elapsed().as_secs_f64());
-    for r in &rows {
+    print("", &rows);
+    rows
+}
+
+/// Coverage of the strands, how far stack and constant α are off, and their structure errors.
+pub fn print(name: &str, rows: &[Row]) {
+    for r in rows {
         println!(
-            "{:4.0}° strands {:.3} stack {:+.3} constant {:+.3}  rmse {:.3} / {:.3}",
+            "{name}{:4.0}° strands {:.3} stack {:+.3} constant {:+.3}  rmse {:.3} / {:.3}",
             r.theta_deg,
             r.strands,
             r.stack - r.strands,
@@ -51,7 +57,6 @@ fn table(guard: bool, shape: Shape, lean_deg: f32) -> Vec<Row> {
             r.rmse_constant
         );
     }
-    rows
 }
 
 /// The first row whose coverage is off by more than 2 points (5 past 60°), or whose structure is not twice as good as with

@@ -1,6 +1,6 @@
 //! Shells sampled on the skin, against the strands that grow there.
 
-use crate::accuracy::fault;
+use crate::accuracy::{fault, print};
 use crate::meshes;
 use furrier::coat::atlas::judge::{Place, Worn, places, surface_tables};
 use furrier::coat::atlas::{Skin, bake};
@@ -76,20 +76,6 @@ impl Ball {
     fn quarter(&self, count: usize, signs: [f32; 2]) -> Vec<Place> {
         let inside = |t: usize| self.mesh.corners_m(t).iter().all(|p| p.x * signs[0] > 8e-3 && p.y * signs[1] > 8e-3);
         places(&self.mesh, count, 5, inside)
-    }
-}
-
-fn print(name: &str, rows: &[Row]) {
-    for r in rows {
-        println!(
-            "{name} {:2.0}°: strands {:.3} stack {:+.3} constant {:+.3} rmse {:.3} / {:.3}",
-            r.theta_deg,
-            r.strands,
-            r.stack - r.strands,
-            r.constant - r.strands,
-            r.rmse,
-            r.rmse_constant
-        );
     }
 }
 

@@ -121,8 +121,17 @@ fn an_atlas_says_that_it_is_one() {
     let inspected = json_of(&["inspect".as_ref(), output.as_os_str()]);
     assert_eq!(inspected["coat"]["tiles"][0]["sampled_on_skin"], true);
     assert_eq!(inspected["coat"]["tiles"][0]["texture_size"], 64);
-    furrier().arg("inspect").arg(&output).assert().success().stdout(predicate::str::contains("atlas 0 (fox)"));
+    let used = inspected["coat"]["tiles"][0]["texels_used"].as_f64().unwrap();
+    // Charts of a few texels and as much padding on every side.
+    assert!((1e-4..0.9).contains(&used), "{used} of the texels");
+    furrier()
+        .arg("inspect")
+        .arg(&output)
+        .assert()
+        .success()
+        .stdout(predicate::str::contains("atlas 0 (fox)").and(predicate::str::contains("of its texels lie on skin")));
     let report: serde_json::Value = serde_json::from_slice(&std::fs::read(&report).unwrap()).unwrap();
+    assert_eq!(report["counts"]["texels_used_by_tile"][0].as_f64(), Some(used));
     assert_eq!(report["error"]["coverage_by_tile"][0].as_array().unwrap().len(), 4);
 }
 

@@ -258,6 +258,7 @@ fn report(baked: &Baked, total_ms: f64) -> Value {
         "device": "cpu",
         "counts": {
             "tiles": summary.tiles.len(),
+            "texels_used_by_tile": summary.tiles.iter().map(|t| t.texels_used).collect::<Vec<_>>(),
             "primitives": summary.primitives.len(),
             "coat_vertices": summary.primitives.iter().map(|p| p.vertices).sum::<usize>(),
             "fins": summary.primitives.iter().map(|p| p.fins).sum::<usize>(),

@@ -84,6 +84,9 @@ fn print(inspection: &Inspection, out: &mut dyn Write) -> io::Result<()> {
             tile.fin_size[1],
             megabytes(tile.vram_bytes)
         )?;
+        if let Some(used) = tile.texels_used {
+            writeln!(out, "    {:.1} % of its texels lie on skin, the rest between charts", 100.0 * used)?;
+        }
         writeln!(
             out,
             "    layers are 2 pixels apart at {:.2} m ({} pixels high, {}° of view); step back further",

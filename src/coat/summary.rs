@@ -43,6 +43,10 @@ pub struct TileSummary {
     pub layers: u32,
     /// Texels along an edge.
     pub texture_size: u32,
+    /// Share of an atlas' texels that lie on skin; the rest is padding and what charts leave between them. Nothing for a tile,
+    /// all of whose texels are hair.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub texels_used: Option<f64>,
     /// Mip levels.
     pub mips: usize,
     /// Texels of the fin texture, along the edge and along the hair.
@@ -78,7 +82,8 @@ pub struct PrimitiveSummary {
 
 /// Counts what `coat` holds.
 pub fn summarise(coat: &Coat) -> Summary {
-    let tiles: Vec<_> = coat.tiles.iter().map(tile).collect();
+    let used = |tile: usize| coat.primitives.iter().filter(|worn| worn.tile == tile).map(uv_area).sum();
+    let tiles: Vec<_> = coat.tiles.iter().enumerate().map(|(i, t)| tile(t, used(i))).collect();
     let primitives: Vec<_> = coat.primitives.iter().map(primitive).collect();
     let shells = |p: &PrimitiveSummary| tiles.get(p.tile).map_or(0, |tile| tile.layers.saturating_sub(1) as usize);
     // A passage between two tiles is drawn with each.
@@ -94,7 +99,17 @@ pub fn summarise(coat: &Coat) -> Summary {
     }
 }
 
-fn tile(tile: &Tile) -> TileSummary {
+/// Area of a primitive's triangles in texture space, in squares of one unit.
+fn uv_area(worn: &CoatPrimitive) -> f64 {
+    let area = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|v| worn.uv[v as usize].as_dvec2());
+        0.5 * (b - a).perp_dot(c - a).abs()
+    };
+    worn.triangles.iter().map(area).sum()
+}
+
+/// `used` is the area of texture space that all who wear it take together.
+fn tile(tile: &Tile, used: f64) -> TileSummary {
     let shells = &tile.shells;
     let bytes = |images: &mut dyn Iterator<Item = &Image8>| images.map(|image| image.pixels.len()).sum::<usize>();
     let mut stacks = shells.albedo.iter().chain(&shells.medium).chain(&shells.ends).flatten();
@@ -106,6 +121,7 @@ fn tile(tile: &Tile) -> TileSummary {
         height_mm: tile.height_m * 1e3,
         layers: shells.layers,
         texture_size: shells.size,
+        texels_used: (tile.sampled == Sampled::Skin).then_some(used),
         mips: shells.albedo.len(),
         fin_size: tile.fin.size,
         gap_distance_m: gap_m * SCREEN.0 / (GAP_PIXELS * 2.0 * (0.5 * SCREEN.1.to_radians()).tan()),

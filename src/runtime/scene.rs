@@ -65,6 +65,9 @@ pub struct Fur<'a> {
     pub triangles: &'a [[u32; 3]],
     /// Edges that may carry a fin.
     pub fins: Cow<'a, [FinEdge]>,
+    /// Whether it lies where the one before it does, in a passage between two tiles. They take turns in which of their shells
+    /// is drawn over the other's, so that neither colour prevails.
+    pub over_last: bool,
 }
 
 /// Which of the three kinds of geometry to draw.

@@ -72,6 +72,7 @@ pub(super) fn fur<'a>(posed: &Posed, worn: &'a CoatPrimitive) -> Fur<'a> {
         tint: Cow::from(&worn.tint),
         triangles: &worn.triangles,
         fins: Cow::from(&worn.fins),
+        over_last: false,
     }
 }
 
@@ -92,6 +93,7 @@ fn furs<'a>(posed: &Posed, worn: &'a CoatPrimitive, tiles: &[Tile]) -> Vec<Fur<'
         uv: worn.uv.iter().map(|uv| *uv * (first.edge_m / second.edge_m)).collect(),
         tint: dense(&|w| w),
         fins: worn.fins.iter().map(fin).collect(),
+        over_last: true,
         ..fur.clone()
     };
     vec![Fur { tint: dense(&|w| 1.0 - w), ..fur }, into]

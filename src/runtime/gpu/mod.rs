@@ -189,8 +189,13 @@ impl<'a> Renderer<'a> {
         let most = self.tiles.iter().map(|tile| tile.layers).max().unwrap_or(0);
         let inner_to_outer: Vec<u32> = (1..most).collect();
         let order: Vec<u32> = if near { inner_to_outer } else { inner_to_outer.into_iter().rev().collect() };
+        let mut turn: Vec<&GpuFur> = furs.iter().collect();
         for layer in order {
-            for fur in furs.iter().filter(|fur| layer < self.tiles[fur.tile].layers && fur.shell_vertices > 0) {
+            for i in (1..furs.len()).filter(|&i| furs[i].over_last) {
+                let pair = [&furs[i - 1], &furs[i]];
+                (turn[i - 1], turn[i]) = if layer % 2 == 0 { pair.into() } else { (pair[1], pair[0]) };
+            }
+            for fur in turn.iter().filter(|fur| layer < self.tiles[fur.tile].layers && fur.shell_vertices > 0) {
                 pass.set_bind_group(1, &self.tiles[fur.tile].group, &[]);
                 pass.set_bind_group(2, &fur.shells, &[]);
                 pass.draw(0..fur.shell_vertices, layer..layer + 1);

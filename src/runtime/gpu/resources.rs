@@ -151,6 +151,8 @@ pub struct GpuFur {
     pub fin_vertices: u32,
     /// Tile it wears.
     pub tile: usize,
+    /// Whether its shells take turns with those of the one before it.
+    pub over_last: bool,
     /// Geometry memory.
     pub bytes: u64,
 }
@@ -170,6 +172,7 @@ impl GpuFur {
             shell_vertices: 3 * fur.triangles.len() as u32,
             fin_vertices: 6 * fins.len() as u32,
             tile: fur.tile,
+            over_last: fur.over_last,
             bytes,
         }
     }

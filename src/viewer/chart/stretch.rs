@@ -27,10 +27,10 @@ pub(super) fn draw<'a>(all: &[Worn<'_>], coat: &Coat) -> Result<(Vec<Skin<'a>>, 
     };
     let legend = vec![
         format!(
-            "colour is the singular value of the map from skin to texture that is farthest from 1: white 1; blue {} and \
-             less of the texture per length of skin (drawn out), deepest at {}; red more (squeezed), deepest at {}; yellow \
-             beyond",
-            ENDS[0], ENDS[0], ENDS[1]
+            "colour is how much texture lies along a length of skin, in the direction in which that is farthest from 1: white \
+             1, as on the flat tile; blue less (hair drawn out), deepest at {}; red more (hair squeezed), deepest at {}; \
+             yellow beyond these",
+            ENDS[0], ENDS[1]
         ),
         format!(
             "least {:.3}, most {:.3}; {:.1} % of the skin is within 0.9 to 1.1, {:.1} % within 0.7 to 1.4",

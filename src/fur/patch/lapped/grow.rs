@@ -10,8 +10,8 @@ use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
 
 /// What a triangle must keep to when it joins and after each flattening. Stretch may go beyond `measure::WITHIN`: the few
-/// triangles there cost less than the seams that narrower limits bring. The angle is narrow, as hair that lies off the comb
-/// on one side of a border and not on the other is what shows most (tables in `docs/steps/patch.md`).
+/// triangles there cost less than the seams that narrower limits bring. A wider angle makes patches fewer, shortens their
+/// seams little, and costs stretch where the mesh is coarse (tables in `docs/steps/patch.md`).
 const LIMITS: Limits = Limits { least: 0.65, most: 1.5, angle_rad: 0.2 };
 /// Triangles joined between two flattenings: as many as the patch has, so that all flattenings together cost about
 /// twice the last one.

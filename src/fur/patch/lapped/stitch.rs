@@ -18,9 +18,9 @@ use std::collections::VecDeque;
 /// Shifts further than this from a whole number of tiles are left, in tiles.
 /// How far a shift may be from a whole number of tiles to be welded, in tiles, pass after pass: each pass sees what the
 /// ones before have moved.
-const NEAR: [f64; 4] = [0.18, 0.28, 0.35, 0.42];
+const NEAR: [f64; 4] = [0.23, 0.36, 0.45, 0.55];
 /// Length ℓ over which displacements fade, in tiles.
-const FADE: f64 = 2.0;
+const FADE: f64 = 1.7;
 /// … and at most so many mean edges: the steps that a solution takes grow with them.
 const FADE_EDGES: f64 = 8.0;
 /// Bounds of cotangent weights, as the comb's.
