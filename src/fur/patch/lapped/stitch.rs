@@ -15,7 +15,6 @@ use crate::math::{DVec2, IVec2, Vec2, Vec3};
 use rayon::prelude::*;
 use std::collections::VecDeque;
 
-/// Shifts further than this from a whole number of tiles are left, in tiles.
 /// How far a shift may be from a whole number of tiles to be welded, in tiles, pass after pass: each pass sees what the
 /// ones before have moved.
 const NEAR: [f64; 4] = [0.23, 0.36, 0.45, 0.55];
