@@ -7,7 +7,7 @@ use furrier::coat::atlas::{Skin, bake};
 use furrier::coat::fins::FinParameters;
 use furrier::coat::judge::Row;
 use furrier::coat::shells::ShellParameters;
-use furrier::coat::tile::TileRecipe;
+use furrier::coat::tile::{TileHair, TileRecipe};
 use furrier::data::coat::{Sampled, Tile};
 use furrier::data::fields::Fields;
 use furrier::data::mesh::Mesh;
@@ -50,20 +50,23 @@ impl Ball {
         Self { mesh, fields, hair }
     }
 
+    fn recipe() -> TileRecipe {
+        TileRecipe {
+            preset: "test".into(),
+            shells: ShellParameters { tile_mm: 8.0, ..ShellParameters::default() },
+            fins: FinParameters { texture_width: 64, texture_height: 16, thickness_mm: 8.0 },
+            skin: Vec3::splat(0.5),
+            lean_deg: 30.0,
+        }
+    }
+
     fn baked(&self, texels: u32) -> (Patches, Tile) {
         let method = Parameterisation::Atlas { texels_per_tile: 64, padding_texels: 4 };
         let mut patches = [parameterise(&self.mesh, &self.fields.direction, 8e-3, method).unwrap()];
         let square = fit_atlas(&mut patches, 8e-3, texels, 4).unwrap();
-        let recipe = TileRecipe {
-            preset: "test".into(),
-            shells: ShellParameters { tile_mm: 8.0, ..ShellParameters::default() },
-            fins: FinParameters { texture_width: 64, texture_height: 16, ..FinParameters::default() },
-            skin: Vec3::splat(0.5),
-            lean_deg: 30.0,
-        };
         let [patches] = patches;
         let skin = Skin { mesh: &self.mesh, fields: &self.fields, patches: &patches, seed: SEED };
-        let tile = bake(&[skin], &square, [&self.hair[0], &self.hair[1]], &recipe, 3);
+        let tile = bake(&[skin], &square, [&self.hair[0], &self.hair[1]], &Self::recipe(), 3);
         (patches, tile)
     }
 
@@ -139,4 +142,37 @@ fn charts_that_do_not_fit_are_refused() {
     let mut patches = [parameterise(&ball.mesh, &ball.fields.direction, 8e-3, method).unwrap()];
     let error = fit_atlas(&mut patches, 8e-3, 4, 4).unwrap_err();
     assert!(error.to_string().contains("do not fit") && error.hint.is_some());
+}
+
+/// Mean optical depth of a fin texture in four bands, from the tips to the roots.
+fn fin_depths(tile: &Tile) -> [f32; 4] {
+    let image = &tile.fin.albedo[0];
+    let rows = image.height as usize / 4;
+    let depth = |i: usize| -(1.0 - f32::from(image.pixels[4 * i + 3]).min(254.0) / 255.0).ln();
+    let band = |b: usize| rows * image.width as usize * b..rows * image.width as usize * (b + 1);
+    [0, 1, 2, 3].map(|b| band(b).map(depth).sum::<f32>() / band(b).len() as f32)
+}
+
+#[test]
+fn fins_show_hair_of_the_skin_with_length_and_density_taken_out() {
+    let ball = Ball::new();
+    let (_, tile) = ball.baked(64);
+    let fibres = [&ball.hair[0], &ball.hair[1]];
+    let flat = TileHair::grow(fibres[0], fibres[1], 8e-3, SEED);
+    let flat = fin_depths(&furrier::coat::tile::bake(&flat, &Ball::recipe()));
+    let grown = fin_depths(&tile);
+    println!("tips to roots: {grown:.3?}, on a square {flat:.3?}");
+    // The lower half, where every hair is; tips are few and vary from place to place.
+    let off = |a: [f32; 4]| (2..4).map(|b| (a[b] / flat[b] - 1.0).abs()).fold(0.0, f32::max);
+    assert!(off(grown) < 0.2, "{grown:?} on the skin, {flat:?} on a square");
+    // Hair half as dense everywhere, or half as long: the coat's vertices say so, not the texture.
+    let mut thinner = Ball::new();
+    thinner.fields.density.iter_mut().for_each(|d| *d *= 0.5);
+    thinner.fields.length.iter_mut().for_each(|l| *l *= 0.5);
+    let thinned = fin_depths(&thinner.baked(64).1);
+    println!("half of both: {thinned:.3?}");
+    assert!(off(thinned) < 0.2, "{thinned:?} on the skin, {flat:?} on a square");
+    // Planted: a preset of half the density, which belongs into the texture.
+    thinner.hair.iter_mut().for_each(|fibre| fibre.density_per_m2 *= 0.5);
+    assert!(off(fin_depths(&thinner.baked(64).1)) > 0.3, "half the hair passes");
 }

@@ -1,6 +1,7 @@
 //! Shells sampled on the skin itself: every texel of an atlas holds the hair that grows there (`docs/steps/shells.md`, "On
 //! the skin").
 
+pub mod fins;
 pub mod flatten;
 pub mod judge;
 pub mod skirt;
@@ -92,12 +93,12 @@ impl Filled {
 }
 
 /// Bakes the atlas of `skins`, whose charts share `square`. `guard` and `undercoat` grow on them; `seed` decides about the
-/// square of hair that gains and the fin texture are taken from.
+/// square of hair that gains are taken from, and where the hair of the fin texture grows.
 pub fn bake(skins: &[Skin<'_>], square: &Square, hair: [&Fibre; 2], recipe: &TileRecipe, seed: u64) -> Tile {
     let texel_m = square.edge_m / square.texels as f32;
     let kinds = [Kind::new(hair[0], texel_m, None), Kind::new(hair[1], texel_m, Some(1.5))];
     let slabs = recipe.shells.layers as usize - 1;
-    let reference = Reference::new(hair, &kinds, recipe, texel_m, seed);
+    let reference = Reference::new(skins, hair, &kinds, recipe, texel_m, seed);
     let height_m = reference.hair.height_m;
     let layout = Layout { toroidal: false, ..Layout::tile(square.texels as usize, slabs, square.edge_m, height_m) };
 
@@ -147,7 +148,7 @@ pub fn bake(skins: &[Skin<'_>], square: &Square, hair: [&Fibre; 2], recipe: &Til
     tile
 }
 
-/// The same hair on toroidal squares: what gains, slopes and the fin texture are taken from.
+/// The same hair on toroidal squares: what gains and slopes are taken from; and the fin texture.
 struct Reference {
     /// Every hair, on a tile as a tiled coat has it.
     hair: TileHair,
@@ -160,7 +161,14 @@ struct Reference {
 }
 
 impl Reference {
-    fn new(hair: [&Fibre; 2], kinds: &[Kind; 2], recipe: &TileRecipe, texel_m: f32, seed: u64) -> Self {
+    fn new(
+        skins: &[Skin<'_>],
+        hair: [&Fibre; 2],
+        kinds: &[Kind; 2],
+        recipe: &TileRecipe,
+        texel_m: f32,
+        seed: u64,
+    ) -> Self {
         let across = (recipe.shells.tile_mm * 1e-3 / texel_m).ceil() as usize;
         let size = across.next_power_of_two().clamp(REFERENCE.0, REFERENCE.1);
         let edge_m = size as f32 * texel_m;
@@ -178,7 +186,9 @@ impl Reference {
             let layout = Layout::tile(size, slabs, edge_m, full.height_m);
             (Filled::new(layout, kinds, [&thin.guard, &thin.undercoat], &slopes), slopes)
         };
-        let fin = || texture::composite(&full, &recipe.fins);
+        let along_skin = fins::grown(skins, hair, &full, combine(seed, 3));
+        let fin_hair = along_skin.as_ref().unwrap_or(&full);
+        let fin = || texture::composite(fin_hair, &recipe.fins);
         let ((filled, slopes), (truth, fin)) = rayon::join(stack, || rayon::join(truth, fin));
         let shells = encode(&Raw {
             voxels: &filled.voxels,
@@ -189,7 +199,7 @@ impl Reference {
             slopes: &slopes,
             skin_share: &[],
         });
-        let fin = texture::encode(&fin, &full, &recipe.fins, &slab_means(&filled.transmittance, slabs));
+        let fin = texture::encode(&fin, fin_hair, &recipe.fins, &slab_means(&filled.transmittance, slabs));
         let tile = Tile {
             preset: recipe.preset.clone(),
             sampled: Sampled::Square,
