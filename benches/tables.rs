@@ -1,6 +1,7 @@
-//! The tables of `docs/steps/patch.md` and `docs/steps/field.md`: `cargo bench --bench tables [-- WHAT [SEEDS]]`.
+//! The tables of `docs/steps/patch.md` and `docs/steps/field.md`: `cargo bench --bench tables [-- WHAT [SEEDS
+//! [MESH]]]`.
 //!
-//! WHAT is `meshes` (every shared mesh by every method), `seams` (each seed of lapped patches), or `comb`; all without.
+//! MESH is a part of the meshes' names. WHAT is `meshes` (every shared mesh by every method), `seams` (each seed of lapped patches), or `comb`; all without.
 //! The shared meshes are needed.
 #![allow(
     clippy::expect_used,
@@ -70,13 +71,13 @@ fn seams_of(mesh: &Mesh, comb: &[Vec3], lean_deg: f32, patches: &Patches, tile: 
     before_after(mesh, &offset, &axes(mesh, comb, patches), patches, tile, 4 * WINDOWS)
 }
 
-fn meshes() {
+fn meshes(part: &str) {
     let preset = Preset::load("fox").expect("built in");
     let tile = tile_of(&preset);
     println!(
         "| mesh | method | triangles | patches | singular values: mean, 5 %, 95 % | within, % | angle, ° | texels per mm: 5 %, 95 % | seams | difference | variance | ms |"
     );
-    for name in MESHES {
+    for name in MESHES.into_iter().filter(|name| name.contains(part)) {
         let Some(mesh) = mesh_of(name, &preset) else { continue };
         let comb = combed(&mesh).direction;
         let mut methods = vec![("lapped", Parameterisation::Lapped { seed: 0 })];
@@ -118,11 +119,11 @@ fn meshes() {
     }
 }
 
-fn seams(seeds: u64) {
+fn seams(seeds: u64, part: &str) {
     for (preset, names) in [("rabbit", &["bunny_5k.glb"][..]), ("fox", &MESHES[..])] {
         let preset = Preset::load(preset).expect("built in");
         let tile = tile_of(&preset);
-        for name in names {
+        for name in names.iter().filter(|name| name.contains(part)) {
             let Some(mesh) = mesh_of(name, &preset) else { continue };
             let comb = combed(&mesh).direction;
             let rows: Vec<String> = (0..seeds)
@@ -168,14 +169,15 @@ fn comb() {
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
     let what = arguments.first().map_or("", String::as_str);
+    let part = arguments.get(2).map_or("", String::as_str);
     let seeds = arguments.get(1).and_then(|n| n.parse().ok()).unwrap_or(3);
     if what.is_empty() || what == "comb" {
         comb();
     }
     if what.is_empty() || what == "seams" {
-        seams(seeds);
+        seams(seeds, part);
     }
     if what.is_empty() || what == "meshes" {
-        meshes();
+        meshes(part);
     }
 }

@@ -18,7 +18,7 @@ const PLACES: usize = 8;
 /// Bakes the atlas of the task's parts and puts it on them.
 pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>) -> Result<Dressed> {
     if let Some(region) = task.preset.regions.first() {
-        return Err(Error::usage("an atlas cannot have regions yet")
+        return Err(Error::usage("an atlas cannot have regions")
             .with_field("regions")
             .with_found(&region.preset)
             .with_expected("a preset without regions")

@@ -25,7 +25,7 @@ const FADE_EDGES: f64 = 8.0;
 /// Bounds of cotangent weights, as the comb's.
 const WEIGHTS: [f64; 2] = [0.05, 20.0];
 /// Passes at most, those that only give up counted.
-const ROUNDS: usize = 10;
+const ROUNDS: usize = 14;
 /// Around a triangle beyond the limits, welds this near are given up, in tiles; more in each round.
 const GIVE_UP: f64 = 0.3;
 /// What triangles must keep to: growth's limits.
@@ -39,6 +39,8 @@ const SMALL: f64 = 0.15;
 const CLOSE: f64 = 0.02;
 /// One triangle in this many may end beyond the limits.
 const FEW: usize = 5000;
+/// Times at most that triangles which are turned over in the end are laid back.
+const LAID_BACK: usize = 64;
 /// Steps of conjugate gradients at most.
 const MOST_STEPS: usize = 500;
 /// Systems smaller than this are not worth several threads.
@@ -59,12 +61,13 @@ pub(super) fn stitch(surface: &Surface, tile_edge_m: f64, patches: &mut Patches)
     let before = patches.uv.clone();
     let bent: Vec<bool> = (0..faces.len()).map(|t| beyond(patches, t)).collect();
     let bad = |patches: &Patches| (0..faces.len()).filter(|&t| !bent[t] && beyond(patches, t)).collect::<Vec<_>>();
+    let turned_over =
+        |patches: &Patches, t: usize| faces[t].jacobian(flat(patches, t)).is_some_and(|[x, y]| x.perp_dot(y) <= 0.0);
     let skin = Skin { laplacian: Laplacian::new(faces, fade_m(faces, tile_edge_m), patches), before: &before };
     // Where the skin itself keeps vertices apart in one place, the texture goes on and shall.
     let own = edges(topology, patches).filter(|edge| edge.ends[0] != edge.ends[1] && edge.joined(patches));
     let own: Vec<Weld> = own.map(|edge| Weld { edge, whole: IVec2::ZERO, off: 0.0 }).collect();
     let mut held: Vec<Weld> = Vec::new();
-    let mut left = Vec::new();
     for round in 0..ROUNDS {
         let near = NEAR.get(round).copied().unwrap_or(0.0);
         let mut tried: Vec<Weld> = open.iter().filter_map(|edge| Weld::near(patches, edge, near)).collect();
@@ -72,18 +75,28 @@ pub(super) fn stitch(surface: &Surface, tile_edge_m: f64, patches: &mut Patches)
         open.retain(|edge| Weld::near(patches, edge, near).is_none());
         held.append(&mut tried);
         skin.spread(own.iter().chain(&held), patches);
-        left = bad(patches);
-        if left.len() > faces.len() / FEW || near > 0.0 && !left.is_empty() {
+        let left = bad(patches);
+        let turned = left.iter().any(|&t| turned_over(patches, t));
+        if turned || left.len() > faces.len() / FEW || near > 0.0 && !left.is_empty() {
             let reach = GIVE_UP * (1 + round.saturating_sub(NEAR.len())) as f64;
-            give_up(surface, left.clone(), tile_edge_m * reach, &mut held);
+            give_up(surface, left, tile_edge_m * reach, &mut held);
         } else if near == 0.0 {
             break;
         }
     }
-    let turned_over = |&t: &usize| faces[t].jacobian(flat(patches, t)).is_some_and(|[x, y]| x.perp_dot(y) <= 0.0);
-    if left.iter().any(turned_over) {
-        patches.uv = before;
+    // What no weld gave way for is laid back corner by corner; a short seam may open there.
+    for _ in 0..LAID_BACK {
+        let turned: Vec<usize> = (0..faces.len()).filter(|&t| !bent[t] && turned_over(patches, t)).collect();
+        for &t in &turned {
+            let corners = patches.triangles[t].map(|v| v as usize);
+            let moved = corners.iter().map(|&v| patches.uv[v] - before[v]).sum::<Vec2>() / 3.0;
+            corners.iter().for_each(|&v| patches.uv[v] = before[v] + moved);
+        }
+        if turned.is_empty() {
+            return;
+        }
     }
+    patches.uv = before;
 }
 
 /// An edge over which the texture is to go on.
