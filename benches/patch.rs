@@ -2,7 +2,7 @@
 //!
 //! First come ratios that a busy machine hardly changes, each from runs that take turns, the best of several: how time
 //! grows with the mesh, and an atlas over what xatlas alone takes with the same chart options. Then the times as divan
-//! measures them. `-- ratios` leaves those out, any other filter the ratios.
+//! measures them. `-- growth` and `-- charts` print one of the ratios alone, any other filter none.
 //!
 //! Spheres are combed by gravity; their triangle count is 8 n². The bunnies need `../shared` and are left out without.
 #![allow(
@@ -30,12 +30,15 @@ fn real_mesh(name: &str) -> Option<Mesh> {
 
 fn main() {
     let filter = std::env::args().skip(1).find(|a| !a.starts_with("--"));
-    if filter.as_deref().is_none_or(|f| f == "ratios") {
-        growth();
-        atlas_over_xatlas();
-    }
-    if filter.as_deref() != Some("ratios") {
-        divan::main();
+    match filter.as_deref() {
+        Some("growth") => growth(),
+        Some("charts") => atlas_over_xatlas(),
+        Some(_) => divan::main(),
+        None => {
+            growth();
+            atlas_over_xatlas();
+            divan::main();
+        }
     }
 }
 
@@ -90,7 +93,7 @@ fn atlas_over_xatlas() {
         let comb = directions(&mesh, &[FieldSource::Tailward { sag: 0.3 }]).expect("a comb").direction;
         let method = Parameterisation::Atlas { texels_per_tile: 128, padding_texels: 4 };
         let (mut ours, mut alone) = ([f64::INFINITY; 2], [f64::INFINITY; 2]);
-        for _ in 0..9 {
+        for _ in 0..15 {
             best(&mut alone, || drop(xatlas_alone(&mesh)));
             best(&mut ours, || drop(parameterise(&mesh, &comb, mesh.diagonal_m() / 20.0, method)));
         }
