@@ -18,9 +18,9 @@ const LIMITS: Limits = Limits { least: 0.65, most: 1.5, angle_rad: 0.2 };
 const LEAST_BATCH: usize = 12;
 /// A batch that brings less than this share of the patch is the last.
 const ENOUGH: f64 = 0.05;
-/// Triangles that a patch may have: keeps the time for large meshes proportional to their size, at 20 patches and more
+/// Triangles that a patch may have: keeps the time for large meshes proportional to their size, at 60 patches and more
 /// for a million triangles.
-const MOST_FACES: usize = 50_000;
+const MOST_FACES: usize = 16_000;
 
 /// Grows the patch `id` from `seed` over triangles that `owner` shows free, and enters them there.
 pub(super) fn grow(surface: &Surface, seed: usize, id: u32, random: u64, owner: &mut [u32]) -> Patch {
