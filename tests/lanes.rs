@@ -1,9 +1,12 @@
 //! Numbers side by side against the same numbers one by one.
 
+use furrier::fur::groom::clump::Nearby;
+use furrier::fur::undercoat::{Pattern, Undercoat};
 use furrier::math::Vec3;
 use furrier::math::hash::Stream;
 use furrier::math::lanes::{self, F32s, Isa, Row, Scalar, Vec3Row, Vec3s, Work};
 use furrier::math::noise::{simplex, simplex_lanes};
+use furrier::render::shell::block::{Block, codes};
 
 /// A function of lanes over many numbers.
 struct Over<'a, F> {
@@ -106,4 +109,47 @@ fn noise_in_lanes_has_the_bits_of_noise() {
             assert_eq!(value.to_bits(), simplex(p, 3).to_bits(), "{name} lane(s), at {p}");
         }
     }
+}
+
+/// Crowding at half height over many points, and its codes.
+struct Crowding<'a> {
+    undercoat: &'a Undercoat,
+    roots_m: &'a [Vec3],
+}
+
+impl Work for Crowding<'_> {
+    type Output = (Vec<f32>, Vec<u8>);
+
+    #[inline(always)]
+    fn run<I: Isa>(self) -> Self::Output {
+        let (mut crowding, mut bytes) = (Vec::new(), Vec::new());
+        let mut nearby = Nearby::default();
+        for some in self.roots_m.chunks(I::LANES) {
+            let mut row = Vec3Row::default();
+            some.iter().enumerate().for_each(|(lane, &p)| row.set(lane, p));
+            let (root_m, normal) = (Vec3s::<I>::of(&row), Vec3s::splat(Vec3::Y));
+            let columns = self.undercoat.columns(&mut nearby, root_m, normal, F32s::splat(0.9));
+            let values = columns.crowdings(F32s::splat(0.5));
+            crowding.extend(&values.row().0[..some.len()]);
+            bytes.extend(codes(values).row()[..some.len()].iter().map(|&code| code as u8));
+        }
+        (crowding, bytes)
+    }
+}
+
+#[test]
+fn columns_side_by_side_crowd_as_one_does() {
+    let undercoat = crate::pelts::mink().1;
+    let fibre = furrier::fur::groom::fibre::Fibre::undercoat(&undercoat, &crate::pelts::colour(), 0.5);
+    let undercoat = Undercoat::new(&fibre, Some(Pattern::default()));
+    let mut random = Stream::new(13);
+    // Points of one cell and of its neighbours lie side by side.
+    let mut coordinate = || 3.0 * undercoat.clump_spacing_m * (random.unit() - 0.5);
+    let roots_m: Vec<Vec3> = (0..4096).map(|_| Vec3::new(coordinate(), coordinate(), coordinate())).collect();
+    let (crowding, bytes) = lanes::run(Crowding { undercoat: &undercoat, roots_m: &roots_m });
+    let alone = |root_m: &Vec3| undercoat.column(*root_m, Vec3::Y, 0.9).crowding(0.5);
+    let truth: Vec<f32> = roots_m.iter().map(alone).collect();
+    assert!(crowding.iter().zip(&truth).all(|(a, b)| a.to_bits() == b.to_bits()));
+    assert!(truth.contains(&0.0) && truth.iter().any(|&c| c > 1.2), "clumps leave gaps between them");
+    assert_eq!(Block::of_codes(4, 16, bytes), Block::new(4, 16, &truth));
 }

@@ -4,8 +4,8 @@
 use super::groom::clump::Nearby;
 use super::groom::fibre::{Fibre, LENGTH_SPREAD};
 use crate::math::Vec3;
-use crate::math::lanes::{F32s, Isa, Vec3s};
-use crate::math::noise::{simplex, simplex_lanes};
+use crate::math::lanes::{F32s, Isa, Mask, Scalar, Vec3s};
+use crate::math::noise::simplex_lanes;
 
 /// The pattern that thins and thickens undercoat (Andersen et al. 2016 §3.2): one noise over the skin through all layers,
 /// blurred towards the tips.
@@ -25,41 +25,36 @@ impl Default for Pattern {
     }
 }
 
-/// The crowding of hair over one point of the skin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Column {
+/// The crowding of hair over points of the skin, one per lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Columns<I: Isa> {
     amplitude: f32,
-    at: Vec3,
-    blur: Vec3,
-    strength: f32,
+    at: Vec3s<I>,
+    blur: Vec3s<I>,
+    strength: F32s<I>,
     /// The q at which hair would come from beyond the clump's cell.
-    wall: f32,
+    wall: F32s<I>,
 }
 
-impl Column {
+impl Columns<Scalar> {
     /// Density over its mean at height `t`.
     pub fn crowding(&self, t: f32) -> f32 {
-        let mut factor = 1.0;
-        if self.amplitude > 0.0 {
-            factor += self.amplitude * simplex(self.at + self.blur * t, 0);
-        }
-        let pull = (self.strength * t * t.sqrt()).min(0.9);
-        let q = 1.0 / (1.0 - pull);
-        if q < self.wall { factor * q * q } else { 0.0 }
+        self.crowdings(F32s::splat(t)).row().0[0]
     }
+}
 
-    /// [`Self::crowding`] in lanes.
+impl<I: Isa> Columns<I> {
+    /// Densities over their means at heights `t`.
     #[inline(always)]
-    pub fn crowdings<I: Isa>(&self, t: F32s<I>) -> F32s<I> {
+    pub fn crowdings(&self, t: F32s<I>) -> F32s<I> {
         let one = F32s::splat(1.0);
         let mut factor = one;
         if self.amplitude > 0.0 {
-            let at = Vec3s::splat(self.at) + Vec3s::splat(self.blur) * t;
-            factor = factor + simplex_lanes(at, 0) * self.amplitude;
+            factor = factor + simplex_lanes(self.at + self.blur * t, 0) * self.amplitude;
         }
         let pull = (t * t.sqrt() * self.strength).min(F32s::splat(0.9));
         let q = one / (one - pull);
-        q.lt(F32s::splat(self.wall)).keep(factor * q * q)
+        q.lt(self.wall).keep(factor * q * q)
     }
 }
 
@@ -123,7 +118,7 @@ impl Undercoat {
         self.pattern.wavelength * self.clump_spacing_m
     }
 
-    /// Finest detail of [`Self::column`], m; infinite where there is none.
+    /// Finest detail of [`Self::columns`], m; infinite where there is none.
     pub fn detail_m(&self) -> f32 {
         let pattern = if self.pattern.amplitude > 0.0 { self.wavelength_m() } else { f32::INFINITY };
         let clumps = if self.clump_strength > 0.0 { self.clump_spacing_m } else { f32::INFINITY };
@@ -131,45 +126,56 @@ impl Undercoat {
     }
 
     /// What crowds the hair over the skin's point `root_m` with this normal, at all heights.
+    pub fn column(&self, root_m: Vec3, normal: Vec3, clump_factor: f32) -> Columns<Scalar> {
+        let (root_m, normal) = (Vec3s::splat(root_m), Vec3s::splat(normal));
+        self.columns(&mut Nearby::default(), root_m, normal, F32s::splat(clump_factor))
+    }
+
+    /// The same for points in lanes; `nearby` may have been used for points close by.
     ///
     /// Clumps are cones: a hair at distance r from its clump's centre stands at r/q at height t, q = 1/(1 − pull), so that
     /// what was spread over the clump's cell crowds by q² inside, and nothing is left outside: where the hair that would
     /// stand here had to come from beyond the cell's wall.
-    pub fn column(&self, root_m: Vec3, normal: Vec3, clump_factor: f32) -> Column {
-        self.column_near(&mut Nearby::default(), root_m, normal, clump_factor)
-    }
-
-    /// The same, where `nearby` was used for a point close by.
-    pub fn column_near(&self, nearby: &mut Nearby, root_m: Vec3, normal: Vec3, clump_factor: f32) -> Column {
-        let amplitude = self.pattern.amplitude;
-        let mut column = Column {
-            amplitude,
-            at: Vec3::ZERO,
-            blur: Vec3::ZERO,
-            strength: self.clump_strength * clump_factor,
-            wall: f32::INFINITY,
+    #[inline(always)]
+    pub fn columns<I: Isa>(
+        &self,
+        nearby: &mut Nearby,
+        root_m: Vec3s<I>,
+        normal: Vec3s<I>,
+        clump_factor: F32s<I>,
+    ) -> Columns<I> {
+        let mut columns = Columns {
+            amplitude: self.pattern.amplitude,
+            at: Vec3s::all(0.0),
+            blur: Vec3s::all(0.0),
+            strength: clump_factor * self.clump_strength,
+            wall: F32s::splat(f32::INFINITY),
         };
-        if amplitude > 0.0 {
-            column.at = root_m / self.wavelength_m();
+        if columns.amplitude > 0.0 {
+            columns.at = root_m.over(F32s::splat(self.wavelength_m()));
             // A fine noise moves the coarse one about, more towards the tips.
-            let (a, b) = (simplex(column.at * 4.0, 1), simplex(column.at * 4.0, 2));
-            column.blur = self.pattern.jitter * Vec3::new(a, b, -a);
+            let fine = columns.at * F32s::splat(4.0);
+            let (a, b) = (simplex_lanes(fine, 1), simplex_lanes(fine, 2));
+            columns.blur = Vec3s::new(a, b, -a) * F32s::splat(self.pattern.jitter);
         }
-        if column.strength > 1e-3 {
-            let centres = nearby.to_centres(root_m, self.clump_spacing_m, 0);
-            let nearer = |a: Vec3, b: Vec3| if b.length_squared() < a.length_squared() { b } else { a };
-            let own = centres.into_iter().fold(Vec3::INFINITY, nearer);
-            let away = normal * own.dot(normal) - own;
-            for other in centres {
-                // A point at root + (q − 1)·away is as near to both centres where it passes the plane between them.
-                let across = away.dot(other - own);
-                if across > 0.0 {
-                    let left = 0.5 * (other.length_squared() - own.length_squared());
-                    column.wall = column.wall.min(1.0 + left / across);
+        let mut waiting = columns.strength.gt(F32s::splat(1e-3)).bits();
+        if waiting != 0 {
+            let over = root_m.over(F32s::splat(self.clump_spacing_m));
+            let homes = Vec3s::new(over.x.floor(), over.y.floor(), over.z.floor()).rows();
+            // Points close by mostly share their cell.
+            while waiting != 0 {
+                let first = waiting.trailing_zeros() as usize;
+                let mut here = 1 << first;
+                for lane in first + 1..I::LANES {
+                    here |= u32::from(homes.lane(lane) == homes.lane(first)) << lane;
                 }
+                let centres_m = nearby.centres_m(homes.lane(first), self.clump_spacing_m, 0);
+                let found = walls(centres_m, root_m, normal);
+                columns.wall = Mask::from_bits(here & waiting).select(found, columns.wall);
+                waiting &= !here;
             }
         }
-        column
+        columns
     }
 
     /// [`Self::mean_sine`] in lanes.
@@ -192,4 +198,27 @@ impl Undercoat {
         // The slope is measured against the hair's height: steeper hairs are thinner by their cosine.
         ((s2 + c * variance) / (1.0 + variance)).sqrt().min(1.0)
     }
+}
+
+/// The q at which hair of the nearest of these centres' clumps would come from beyond its cell.
+#[inline(always)]
+fn walls<I: Isa>(centres_m: &[Vec3; 27], root_m: Vec3s<I>, normal: Vec3s<I>) -> F32s<I> {
+    let (mut own, mut own_m2) = (Vec3s::all(f32::INFINITY), F32s::splat(f32::INFINITY));
+    for &centre_m in centres_m {
+        let other = Vec3s::splat(centre_m) - root_m;
+        let other_m2 = other.dot(other);
+        let nearer = other_m2.lt(own_m2);
+        own = other.select(nearer, own);
+        own_m2 = nearer.select(other_m2, own_m2);
+    }
+    let away = normal * own.dot(normal) - own;
+    let mut wall = F32s::splat(f32::INFINITY);
+    for &centre_m in centres_m {
+        let other = Vec3s::splat(centre_m) - root_m;
+        // A point at root + (q − 1)·away is as near to both centres where it passes the plane between them.
+        let across = away.dot(other - own);
+        let left = (other.dot(other) - own_m2) * 0.5;
+        wall = across.gt(F32s::splat(0.0)).select(wall.min(left / across + 1.0), wall);
+    }
+    wall
 }

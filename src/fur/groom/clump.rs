@@ -49,7 +49,12 @@ impl Default for Nearby {
 impl Nearby {
     /// As [`to_centres_in_space`]; spacing and seed are those of the calls before.
     pub fn to_centres(&mut self, root_m: Vec3, spacing_m: f32, seed: u64) -> [Vec3; 27] {
-        let home = (root_m / spacing_m).floor();
+        self.centres_m((root_m / spacing_m).floor(), spacing_m, seed).map(|centre| centre - root_m)
+    }
+
+    /// The clump centres of cell `home`, which has whole coordinates, and the cells around it, m; spacing and seed are
+    /// those of the calls before.
+    pub fn centres_m(&mut self, home: Vec3, spacing_m: f32, seed: u64) -> &[Vec3; 27] {
         if home != self.home {
             self.home = home;
             self.centres_m = std::array::from_fn(|i| {
@@ -59,6 +64,6 @@ impl Nearby {
                 (cell + offset) * spacing_m
             });
         }
-        self.centres_m.map(|centre| centre - root_m)
+        &self.centres_m
     }
 }

@@ -107,6 +107,12 @@ impl<I: Isa> Vec3s<I> {
         Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
     }
 
+    /// Divided by numbers.
+    #[inline(always)]
+    pub fn over(self, by: F32s<I>) -> Self {
+        Self::new(self.x / by, self.y / by, self.z / by)
+    }
+
     /// With `x` added to every coordinate.
     #[inline(always)]
     pub fn plus(self, x: F32s<I>) -> Self {

@@ -6,10 +6,10 @@ use super::{From, Journey, Start, Stepping, Steps, Traveller};
 use crate::fur::groom::clump::Nearby;
 use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::Vec3;
-use crate::math::lanes::{self, F32s, Isa, MOST, Mask, Row};
+use crate::math::lanes::{self, F32s, Isa, MOST, Mask, Row, Vec3Row, Vec3s};
 use crate::render::pelt::{Layer, Pelt};
 use crate::render::shell::Shell;
-use crate::render::shell::block::{Block, Blocks};
+use crate::render::shell::block::{Block, Blocks, codes};
 use crate::render::shell::subelement;
 use crate::render::table::Table;
 use std::f32::consts::FRAC_PI_4;
@@ -279,27 +279,36 @@ impl lanes::Work for Fill<'_, '_> {
     #[inline(always)]
     fn run<I: Isa>(self) -> Block {
         let Self { volume, triangle } = self;
+        let shell = &volume.shell;
+        let corners = shell.skin.triangles[triangle as usize].map(|v| v as usize);
         // Patterns keep to the rest pose, so that they do not swim under a moving skin.
-        let foot_m = volume.shell.skin.rest_corners_m(triangle as usize);
+        let foot_m = shell.skin.rest_corners_m(triangle as usize).map(Vec3s::<I>::splat);
+        let normals = corners.map(|v| Vec3s::splat(volume.rest_normals[v]));
+        let clump = corners.map(|v| F32s::splat(shell.fields.clump[v]));
         let d = u32::from(volume.subdivisions[triangle as usize]);
         let (layers, per_layer) = (volume.layers() as usize, 1_usize << (2 * d));
         let mut nearby = Nearby::default();
-        let mut values = vec![0.0; layers * per_layer];
-        for i in 0..per_layer {
-            let b = subelement::centre(i as u32, d);
+        let mut values = vec![0; layers * per_layer];
+        for first in (0..per_layer).step_by(I::LANES) {
+            let count = I::LANES.min(per_layer - first);
+            let mut b = Vec3Row::default();
+            for lane in 0..count {
+                b.set(lane, subelement::centre((first + lane) as u32, d));
+            }
+            let b = Vec3s::of(&b);
             let root_m = foot_m[0] * b.x + foot_m[1] * b.y + foot_m[2] * b.z;
-            let normal = volume.shell.vector(&volume.rest_normals, triangle, b).normalize_or(Vec3::Y);
-            let factor = volume.shell.scalar(&volume.shell.fields.clump, triangle, b);
-            let column = volume.shell.undercoat.column_near(&mut nearby, root_m, normal, factor);
-            for first in (0..layers).step_by(I::LANES) {
-                let t = F32s::<I>::each(|lane| ((first + lane) as f32 + 0.5) / layers as f32);
-                let crowding = column.crowdings(t).row();
-                for (lane, &value) in crowding.0[..I::LANES.min(layers - first)].iter().enumerate() {
-                    values[(first + lane) * per_layer + i] = value;
+            let normal = (normals[0] * b.x + normals[1] * b.y + normals[2] * b.z).normalized_or(Vec3s::splat(Vec3::Y));
+            let factor = clump[0] * b.x + clump[1] * b.y + clump[2] * b.z;
+            let columns = shell.undercoat.columns(&mut nearby, root_m, normal, factor);
+            for layer in 0..layers {
+                let t = F32s::splat((layer as f32 + 0.5) / layers as f32);
+                let codes = codes(columns.crowdings(t)).row();
+                for (value, code) in values[layer * per_layer + first..][..count].iter_mut().zip(codes) {
+                    *value = code as u8;
                 }
             }
         }
-        Block::new(d, layers as u32, &values)
+        Block::of_codes(d, layers as u32, values)
     }
 }
 

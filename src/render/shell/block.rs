@@ -21,6 +21,12 @@ impl Block {
         Self { d, layers, values: values.iter().map(|&v| code(v)).collect() }
     }
 
+    /// Of `d` subdivisions and `layers`, from what [`codes`] gives by i_l·4^d + i.
+    pub fn of_codes(d: u32, layers: u32, codes: Vec<u8>) -> Self {
+        debug_assert_eq!(codes.len(), (layers << (2 * d)) as usize, "one code per sub-element");
+        Self { d, layers, values: codes.into() }
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.values.len()
@@ -82,4 +88,10 @@ impl<'a> Blocks<'a> {
 /// Square-root coding: small values keep their relative precision.
 fn code(value: f32) -> u8 {
     ((value / LARGEST).clamp(0.0, 1.0).sqrt() * 255.0 + 0.5) as u8
+}
+
+/// The bytes that stand for values.
+#[inline(always)]
+pub fn codes<I: Isa>(values: F32s<I>) -> U32s<I> {
+    ((values / F32s::splat(LARGEST)).within(0.0, 1.0).sqrt() * 255.0 + 0.5).to_whole()
 }
