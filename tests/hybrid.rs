@@ -2,7 +2,7 @@
 
 use crate::pelts::{self, Grown};
 use furrier::data::camera::Camera;
-use furrier::data::film::Film;
+use furrier::data::film::{Film, Layers};
 use furrier::math::Vec3;
 use furrier::render::picture::{Settings, draw};
 use furrier::render::resolve::Blending;
@@ -20,6 +20,7 @@ const SETTINGS: Settings = Settings {
         pattern: None,
     },
     band_bytes: 256 << 20,
+    layers: Layers::All,
 };
 
 fn thin() -> Grown {
@@ -108,4 +109,19 @@ fn shorter_steps_agree_with_longer_ones() {
     };
     let (fine, coarse) = (mean(0.02, 0.25), mean(0.25, 2.0));
     assert!((fine - coarse).abs() < 0.003, "coverage {fine} by short steps, {coarse} by long ones");
+}
+
+#[test]
+fn layers_that_are_not_asked_for_take_no_room_and_change_nothing() {
+    let grown = thin();
+    let camera = pelts::camera(0.2);
+    let of = |layers| film(&grown, &camera, &Settings { layers, passes: 2, ..SETTINGS });
+    let [all, depth, light] = [Layers::All, Layers::LightAndDepth, Layers::Light].map(of);
+    for film in [&depth, &light] {
+        assert_eq!((&film.radiance, &film.alpha), (&all.radiance, &all.alpha));
+        assert!(film.albedo.is_empty() && film.tangent.is_empty() && film.normal.is_empty());
+        assert!(film.guard.is_empty() && film.undercoat.is_empty());
+    }
+    assert_eq!(depth.depth_m, all.depth_m);
+    assert!(light.depth_m.is_empty() && all.albedo.len() == all.alpha.len());
 }

@@ -1,6 +1,8 @@
 //! Numbers side by side against the same numbers one by one.
 
+use furrier::fur::groom::Colour;
 use furrier::fur::groom::clump::Nearby;
+use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::undercoat::{Pattern, Undercoat};
 use furrier::math::Vec3;
 use furrier::math::hash::Stream;
@@ -139,8 +141,7 @@ impl Work for Crowding<'_> {
 
 #[test]
 fn columns_side_by_side_crowd_as_one_does() {
-    let undercoat = crate::pelts::mink().1;
-    let fibre = furrier::fur::groom::fibre::Fibre::undercoat(&undercoat, &crate::pelts::colour(), 0.5);
+    let fibre = Fibre::undercoat(&crate::pelts::mink().1, &Colour::default(), 0.5);
     let undercoat = Undercoat::new(&fibre, Some(Pattern::default()));
     let mut random = Stream::new(13);
     // Points of one cell and of its neighbours lie side by side.
@@ -151,5 +152,7 @@ fn columns_side_by_side_crowd_as_one_does() {
     let truth: Vec<f32> = roots_m.iter().map(alone).collect();
     assert!(crowding.iter().zip(&truth).all(|(a, b)| a.to_bits() == b.to_bits()));
     assert!(truth.contains(&0.0) && truth.iter().any(|&c| c > 1.2), "clumps leave gaps between them");
-    assert_eq!(Block::of_codes(4, 16, bytes), Block::new(4, 16, &truth));
+    // 256 sub-elements of 16 layers, by layers and by sub-elements.
+    let column = |i: usize| bytes.iter().skip(i).step_by(256).copied();
+    assert_eq!(Block::of_codes(4, 16, (0..256).flat_map(column).collect()), Block::new(4, 16, &truth));
 }

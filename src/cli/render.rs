@@ -6,6 +6,7 @@ use super::output;
 use crate::asset::strands;
 use crate::bake::picture::{Grown, Only, Scene, studio};
 use crate::data::camera::Camera;
+use crate::data::film::Layers;
 use crate::error::{Error, Result};
 use crate::math::{DVec3, Vec2, Vec3};
 use crate::preset::Preset;
@@ -183,7 +184,14 @@ impl Render {
         self.check_lens()?;
         let mut drawn = match self.quality {
             Quality::Reference => self.reference(&grown, &lighting, &camera, size)?,
-            _ => grown.draw_on(&device, &lighting, &camera, &self.settings_of(size))?,
+            _ => {
+                let layers = match (kind.as_str(), self.f_number) {
+                    ("exr", _) => Layers::All,
+                    (_, Some(_)) => Layers::LightAndDepth,
+                    (_, None) => Layers::Light,
+                };
+                grown.draw_on(&device, &lighting, &camera, &Settings { layers, ..self.settings_of(size) })?
+            }
         };
         drawn.notes.iter().for_each(|note| console.warning(note));
         self.defocus(&mut drawn.picture, &camera, &grown)?;

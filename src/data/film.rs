@@ -2,7 +2,20 @@
 
 use crate::math::Vec3;
 
-/// An image with the layers a bake and an EXR need; every array has `width * height` entries, rows from the top.
+/// Which layers of a film are filled: each costs memory, 64 bytes per pixel in all.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Layers {
+    /// Radiance and alpha, 16 bytes per pixel: what an eight-bit picture shows.
+    Light,
+    /// Those and distance, 20 bytes per pixel: what a lens needs.
+    LightAndDepth,
+    /// All.
+    #[default]
+    All,
+}
+
+/// An image with the layers a bake and an EXR need; every array has `width * height` entries, rows from the top, or none
+/// where its layer was not asked for.
 ///
 /// Colour-like layers (`radiance`, `albedo`, `tangent`, `normal`) are premultiplied by `alpha`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,20 +43,27 @@ pub struct Film {
 }
 
 impl Film {
-    /// A film of zeros.
+    /// A film of zeros with all layers.
     pub fn new(width: usize, height: usize) -> Self {
+        Self::of_layers(width, height, Layers::All)
+    }
+
+    /// A film of zeros.
+    pub fn of_layers(width: usize, height: usize, layers: Layers) -> Self {
         let n = width * height;
+        let depth = if layers == Layers::Light { 0 } else { n };
+        let all = if layers == Layers::All { n } else { 0 };
         Self {
             width,
             height,
             radiance: vec![Vec3::ZERO; n],
             alpha: vec![0.0; n],
-            depth_m: vec![0.0; n],
-            albedo: vec![Vec3::ZERO; n],
-            tangent: vec![Vec3::ZERO; n],
-            normal: vec![Vec3::ZERO; n],
-            guard: vec![0.0; n],
-            undercoat: vec![0.0; n],
+            depth_m: vec![0.0; depth],
+            albedo: vec![Vec3::ZERO; all],
+            tangent: vec![Vec3::ZERO; all],
+            normal: vec![Vec3::ZERO; all],
+            guard: vec![0.0; all],
+            undercoat: vec![0.0; all],
         }
     }
 

@@ -13,7 +13,7 @@ mod scene;
 
 use super::march::volume::Volume;
 use super::pelt::{Lighting, Pelt};
-use super::picture::{Counts, Picture, Row, Settings, finish, shift, subdivisions};
+use super::picture::{Counts, Picture, Row, Settings, finish, put, shift, subdivisions};
 use super::resolve::Blending;
 use super::view::View;
 use crate::data::camera::Camera;
@@ -68,7 +68,7 @@ pub fn draw(
     let lit = band.light(gpu, &kernels, &scene, &middle)?;
     add_row(&mut picture, "shaded strands", lit, scene.bytes[1]);
     let [width, height] = settings.size;
-    picture.film = Film::new(width, height);
+    picture.film = Film::of_layers(width, height, settings.layers);
     let mut row = 0;
     while row < height {
         let rows = [row as u32, (row + plan.rows).min(height) as u32];
@@ -129,13 +129,13 @@ fn unpack(film: &mut Film, first: usize, planes: &[[f32; 4]]) {
     let rgb = |v: &[f32; 4]| Vec3::new(v[0], v[1], v[2]);
     for i in 0..count {
         let [radiance, albedo, tangent, normal] = [0, 1, 2, 3].map(|plane| &planes[plane * count + i]);
-        film.radiance[first + i] = rgb(radiance);
-        film.alpha[first + i] = radiance[3];
-        film.albedo[first + i] = rgb(albedo);
-        film.depth_m[first + i] = albedo[3];
-        film.tangent[first + i] = rgb(tangent);
-        film.guard[first + i] = tangent[3];
-        film.normal[first + i] = rgb(normal);
-        film.undercoat[first + i] = normal[3];
+        put(&mut film.radiance, first + i, rgb(radiance));
+        put(&mut film.alpha, first + i, radiance[3]);
+        put(&mut film.albedo, first + i, rgb(albedo));
+        put(&mut film.depth_m, first + i, albedo[3]);
+        put(&mut film.tangent, first + i, rgb(tangent));
+        put(&mut film.guard, first + i, tangent[3]);
+        put(&mut film.normal, first + i, rgb(normal));
+        put(&mut film.undercoat, first + i, normal[3]);
     }
 }

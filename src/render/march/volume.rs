@@ -303,8 +303,8 @@ impl lanes::Work for Fill<'_, '_> {
             for layer in 0..layers {
                 let t = F32s::splat((layer as f32 + 0.5) / layers as f32);
                 let codes = codes(columns.crowdings(t)).row();
-                for (value, code) in values[layer * per_layer + first..][..count].iter_mut().zip(codes) {
-                    *value = code as u8;
+                for (lane, &code) in codes[..count].iter().enumerate() {
+                    values[(first + lane) * layers + layer] = code as u8;
                 }
             }
         }

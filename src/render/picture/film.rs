@@ -5,6 +5,8 @@ use crate::math::Vec3;
 use crate::render::bins::{Grid, TILE};
 use crate::render::resolve::Pixel;
 use rayon::prelude::*;
+use std::mem::take;
+use std::ops::Range;
 
 /// One row of tiles of a film, to be filled by one thread.
 pub(super) struct FilmRows<'a> {
@@ -25,45 +27,60 @@ impl FilmRows<'_> {
     /// Depths are still weighted by alpha: passes add up, [`finish`] divides.
     pub(super) fn set(&mut self, y: usize, x: usize, pixel: &Pixel, depth_scale: f32) {
         let at = y * self.width + x;
-        self.radiance[at] = pixel.radiance;
-        self.alpha[at] = pixel.alpha;
-        self.depth_m[at] = pixel.z_m * depth_scale;
-        self.albedo[at] = pixel.albedo;
-        self.tangent[at] = pixel.tangent;
-        self.normal[at] = pixel.normal;
-        self.guard[at] = pixel.guard;
-        self.undercoat[at] = pixel.undercoat;
+        put(self.radiance, at, pixel.radiance);
+        put(self.alpha, at, pixel.alpha);
+        put(self.depth_m, at, pixel.z_m * depth_scale);
+        put(self.albedo, at, pixel.albedo);
+        put(self.tangent, at, pixel.tangent);
+        put(self.normal, at, pixel.normal);
+        put(self.guard, at, pixel.guard);
+        put(self.undercoat, at, pixel.undercoat);
+    }
+}
+
+/// Sets a pixel of a layer, where the film has it.
+pub(in crate::render) fn put<T>(layer: &mut [T], at: usize, value: T) {
+    if let Some(out) = layer.get_mut(at) {
+        *out = value;
     }
 }
 
 pub(super) fn film_rows<'a>(film: &'a mut Film, grid: &Grid) -> impl IndexedParallelIterator<Item = FilmRows<'a>> {
     let width = film.width;
-    let (from, to) = (grid.first_row * TILE * width, ((grid.first_row + grid.rows) * TILE).min(film.height) * width);
-    let size = TILE * width;
-    (
-        film.radiance[from..to].par_chunks_mut(size),
-        film.alpha[from..to].par_chunks_mut(size),
-        film.depth_m[from..to].par_chunks_mut(size),
-        film.albedo[from..to].par_chunks_mut(size),
-        film.tangent[from..to].par_chunks_mut(size),
-        film.normal[from..to].par_chunks_mut(size),
-        film.guard[from..to].par_chunks_mut(size),
-        film.undercoat[from..to].par_chunks_mut(size),
-    )
-        .into_par_iter()
-        .enumerate()
-        .map(move |(row, (radiance, alpha, depth_m, albedo, tangent, normal, guard, undercoat))| FilmRows {
+    let pixels = grid.first_row * TILE * width..((grid.first_row + grid.rows) * TILE).min(film.height) * width;
+    let mut radiance = rows(&mut film.radiance, &pixels, width, grid.rows);
+    let mut alpha = rows(&mut film.alpha, &pixels, width, grid.rows);
+    let mut depth_m = rows(&mut film.depth_m, &pixels, width, grid.rows);
+    let mut albedo = rows(&mut film.albedo, &pixels, width, grid.rows);
+    let mut tangent = rows(&mut film.tangent, &pixels, width, grid.rows);
+    let mut normal = rows(&mut film.normal, &pixels, width, grid.rows);
+    let mut guard = rows(&mut film.guard, &pixels, width, grid.rows);
+    let mut undercoat = rows(&mut film.undercoat, &pixels, width, grid.rows);
+    let all: Vec<FilmRows<'a>> = (0..grid.rows)
+        .map(|row| FilmRows {
             row,
             width,
-            radiance,
-            alpha,
-            depth_m,
-            albedo,
-            tangent,
-            normal,
-            guard,
-            undercoat,
+            radiance: take(&mut radiance[row]),
+            alpha: take(&mut alpha[row]),
+            depth_m: take(&mut depth_m[row]),
+            albedo: take(&mut albedo[row]),
+            tangent: take(&mut tangent[row]),
+            normal: take(&mut normal[row]),
+            guard: take(&mut guard[row]),
+            undercoat: take(&mut undercoat[row]),
         })
+        .collect();
+    all.into_par_iter()
+}
+
+/// A layer's pixels of each of `count` rows of tiles; none of a layer that the film does not have.
+fn rows<'a, T>(layer: &'a mut [T], pixels: &Range<usize>, width: usize, count: usize) -> Vec<&'a mut [T]> {
+    let mut rows: Vec<&mut [T]> = match layer.get_mut(pixels.clone()) {
+        Some(layer) => layer.chunks_mut(TILE * width).collect(),
+        None => Vec::new(),
+    };
+    rows.resize_with(count, Default::default);
+    rows
 }
 
 /// Adds one pass to the sum of those before it.

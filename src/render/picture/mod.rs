@@ -11,12 +11,12 @@ use super::pelt::{Lighting, Pelt};
 use super::resolve::Blending;
 use super::view::View;
 use crate::data::camera::Camera;
-use crate::data::film::Film;
+use crate::data::film::{Film, Layers};
 use crate::error::Result;
 use crate::fur::undercoat::Undercoat;
 use crate::math::{Vec2, sampling};
 use film::add;
-pub(in crate::render) use film::finish;
+pub(in crate::render) use film::{finish, put};
 use pass::Pass;
 use std::time::Instant;
 
@@ -35,6 +35,8 @@ pub struct Settings {
     pub resolution: Resolution,
     /// Memory for the strands of a band of rows, bytes: smaller budgets give more bands and the same picture.
     pub band_bytes: usize,
+    /// What the film holds.
+    pub layers: Layers,
 }
 
 impl Default for Settings {
@@ -46,6 +48,7 @@ impl Default for Settings {
             stepping: Stepping::default(),
             resolution: Resolution::default(),
             band_bytes: 256 << 20,
+            layers: Layers::All,
         }
     }
 }

@@ -66,7 +66,7 @@ impl<'a> Pass<'a> {
 
     pub(super) fn run(&self, picture: &mut Picture) -> Film {
         let [width, height] = self.settings.size;
-        let mut film = Film::new(width, height);
+        let mut film = Film::of_layers(width, height, self.settings.layers);
         let whole = Grid::whole(self.settings.size);
 
         let start = Instant::now();
@@ -205,25 +205,23 @@ impl<'a> Pass<'a> {
             })
             .collect();
         const CHUNK: usize = 512;
-        let parts: Vec<(Vec<Knot>, Vec<Look>)> = visible
-            .par_chunks(CHUNK)
-            .map(|chunk| {
-                let size = chunk.len() * strands.points_per_strand;
-                let (mut knots, mut looks) = (Vec::with_capacity(size), Vec::with_capacity(size));
-                for &strand in chunk {
-                    project::knots(strands, strand as usize, &self.view, &mut knots);
-                }
-                shader.strands(chunk, &mut looks);
-                (knots, looks)
-            })
-            .collect();
-        let size = visible.len() * strands.points_per_strand;
-        let (mut knots, mut looks) = (Vec::with_capacity(size), Vec::with_capacity(size));
-        for (some_knots, some_looks) in parts {
-            knots.extend(some_knots);
-            looks.extend(some_looks);
-        }
         let points = strands.points_per_strand;
+        let size = visible.len() * points;
+        let (mut knots, mut looks) = (vec![Knot::default(); size], vec![Look::default(); size]);
+        visible
+            .par_chunks(CHUNK)
+            .zip(knots.par_chunks_mut(CHUNK * points).zip(looks.par_chunks_mut(CHUNK * points)))
+            .for_each_init(Default::default, |scratch: &mut (Vec<Knot>, Vec<Look>), (chunk, (knots, looks))| {
+                let (some_knots, some_looks) = scratch;
+                some_knots.clear();
+                some_looks.clear();
+                for &strand in chunk {
+                    project::knots(strands, strand as usize, &self.view, some_knots);
+                }
+                shader.strands(chunk, some_looks);
+                knots.copy_from_slice(some_knots);
+                looks.copy_from_slice(some_looks);
+            });
         let bins = Bins::new(grid, knots.len(), |i| {
             if i % points == points - 1 {
                 return Reach::NOTHING;
