@@ -57,12 +57,22 @@ fn small_tile(preset: &furrier::preset::Preset) -> furrier::data::coat::Tile {
 
 #[test]
 fn stitching_takes_most_seams_away() {
-    for (mesh, tile_edge_m) in [(meshes::sphere(24, 0.1), 0.02), (meshes::torus(24, [1.0, 0.4]), 0.2)] {
+    let mut skins = vec![(meshes::sphere(24, 0.1), 0.02), (meshes::torus(24, [1.0, 0.4]), 0.2)];
+    // Meshes on which welds once turned a single triangle over, for which all of them were given up.
+    for file in ["suzanne_15k.glb", "bunny_69k.glb"] {
+        let Some(shared) = shared() else { continue };
+        let asset = furrier::asset::load(&shared.join("real").join(file).to_string_lossy()).expect("a mesh");
+        skins.push((asset.parts[0].mesh(1.0 / asset.diagonal_units).expect("a sound part"), 1.0 / 60.0));
+    }
+    for (mesh, tile_edge_m) in skins {
         let comb = directions(&mesh, &[FieldSource::Tailward { sag: 0.3 }]).expect("a comb").direction;
-        let stitched = parameterise(&mesh, &comb, tile_edge_m, LAPPED).expect("patches");
-        let loose = measure(&mesh, &comb, tile_edge_m, &stitched.by_chance());
-        assert!(stitched.stats.seams_m < 0.75 * loose.seams_m, "{} of {} m", stitched.stats.seams_m, loose.seams_m);
-        assert!(stitched.stats.within > 0.95, "{:?}", stitched.stats);
+        for seed in 0..2 {
+            let method = Parameterisation::Lapped { seed };
+            let stitched = parameterise(&mesh, &comb, tile_edge_m, method).expect("patches");
+            let loose = measure(&mesh, &comb, tile_edge_m, &stitched.by_chance());
+            assert!(stitched.stats.seams_m < 0.75 * loose.seams_m, "{} of {} m", stitched.stats.seams_m, loose.seams_m);
+            assert!(stitched.stats.within > 0.95 && stitched.stats.mirrored_m2 == 0.0, "{:?}", stitched.stats);
+        }
     }
 }
 
