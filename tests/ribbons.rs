@@ -1,15 +1,16 @@
 //! Guard hair as ribbons: areas, order, and agreement with rays cast at the same hairs.
 
 use crate::pelts::{self, Grown};
-use furrier::data::film::Film;
+use furrier::data::film::{Film, Layers};
 use furrier::math::Vec3;
 use furrier::math::hash::Stream;
+use furrier::math::lanes::{self, Isa};
 use furrier::render::cast::Caster;
 use furrier::render::pelt::Pelt;
 use furrier::render::picture::{Picture, Settings, draw};
 use furrier::render::rays::Rays;
-use furrier::render::resolve::{Blending, composite, order};
-use furrier::render::strands::ribbon::{Window, rasterise};
+use furrier::render::resolve::{Blending, composite, settle};
+use furrier::render::strands::ribbon::{Narrow, Share, Window, rasterise};
 use furrier::render::strands::{Fragment, Knot};
 use furrier::render::{DepthRange, Scene};
 
@@ -37,6 +38,61 @@ fn coverage_sums_to_the_ribbons_area() {
     }
 }
 
+/// Finds the shares of a ribbon in lanes.
+struct InLanes<'a>(&'a Knot, &'a Knot, Window);
+
+impl lanes::Work for InLanes<'_> {
+    type Output = Option<Vec<Share>>;
+
+    #[inline(always)]
+    fn run<I: Isa>(self) -> Option<Vec<Share>> {
+        let narrow = Narrow::new(self.0, self.1, self.2)?;
+        let mut shares = Vec::new();
+        for first in (narrow.rows[0]..narrow.rows[1]).step_by(I::LANES) {
+            let rows = narrow.rows::<I>(first);
+            for lane in 0..I::LANES.min((narrow.rows[1] - first) as usize) {
+                for k in 0..rows.count[lane] as usize {
+                    let (row, across) = (first + lane as i32, (rows.begin[lane] as usize + k) as i32);
+                    let pixel = if narrow.flat { [row, across] } else { [across, row] };
+                    let (coverage, linear, along) = (rows.coverage[k].0[lane], rows.linear.0[lane], rows.along.0[lane]);
+                    if coverage > 0.0 {
+                        shares.push(Share { pixel, coverage, linear, along });
+                    }
+                }
+            }
+        }
+        Some(shares)
+    }
+}
+
+#[test]
+fn rows_in_lanes_have_the_bits_of_ribbons() {
+    let mut random = Stream::new(8);
+    let window = Window { from: [8, 16], to: [40, 48] };
+    let mut narrow = 0;
+    for i in 0..4000 {
+        let mut end = || {
+            let half_px = if i % 3 == 0 { 0.6 } else { 0.2 } * random.unit();
+            let (x, y) = (48.0 * random.unit(), 56.0 * random.unit());
+            Knot { half_px, z_m: 1.0 + random.unit(), ..knot(x, y, half_px) }
+        };
+        let (a, mut b) = (end(), end());
+        match i % 8 {
+            0 => b.x = a.x,
+            1 => b.y = a.y,
+            2 => (b.x, b.y) = (a.x, a.y),
+            _ => {}
+        }
+        let mut expected = Vec::new();
+        rasterise(&a, &b, window, |share| expected.push(share));
+        if let Some(found) = lanes::run(InLanes(&a, &b, window)) {
+            assert_eq!(found, expected, "{a:?} {b:?}");
+            narrow += 1;
+        }
+    }
+    assert!(narrow > 3000, "{narrow}");
+}
+
 #[test]
 fn a_hair_thinner_than_a_pixel_covers_its_share() {
     let sum = covered(&knot(0.3, 0.0, 0.0005), &knot(0.7, 10.0, 0.0005));
@@ -49,20 +105,23 @@ fn a_hair_thinner_than_a_pixel_covers_its_share() {
 fn a_thousand_fragments_at_one_depth_are_ordered_by_id() {
     let mut random = Stream::new(5);
     let mut fragments: Vec<Fragment> =
-        (0..1000).map(|id| Fragment::new(if id < 500 { 1.0 } else { 2.0 }, id, 0.002, id, 0.5)).collect();
+        (0..1000).map(|id| Fragment::new(if id < 500 { 1.0 } else { 2.0 }, id, [0.002, 1.0], id, 0.5)).collect();
     let draw = |fragments: &[Fragment]| {
-        composite(fragments, &[], Blending::Virtual { fragments: 1 }, None, |f| {
+        composite(Layers::All, fragments, &[], Blending::Virtual { fragments: 1 }, None, |f| {
             let radiance = Vec3::splat(f.id() as f32 * 1e-3);
-            (furrier::render::resolve::Face { z_m: f.z_m(), radiance, ..Default::default() }, 1.0)
+            furrier::render::resolve::Face { z_m: f.z_m(), radiance, ..Default::default() }
         })
     };
-    order(&mut fragments);
-    let first = draw(&fragments);
+    let mut veil = [0.0; 1000];
+    let mut settled = |fragments: &mut [Fragment]| {
+        let count = settle(fragments, &mut veil);
+        draw(&fragments[..count])
+    };
+    let first = settled(&mut fragments);
     assert!((first.alpha - (1.0 - 0.998_f32.powi(1000))).abs() < 1e-4, "{}", first.alpha);
     for _ in 0..5 {
         fragments.sort_by_cached_key(|_| random.bits());
-        order(&mut fragments);
-        assert_eq!(draw(&fragments), first);
+        assert_eq!(settled(&mut fragments), first);
     }
 }
 

@@ -10,6 +10,8 @@
 
 // Transmittance below which nothing behind can be seen.
 const OPAQUE: f32 = 1e-3;
+// How much deeper a ray's last steps may be than its first.
+const MOST_PATIENCE: f32 = 4.0;
 const NO_STRETCH: u32 = 0xffffffffu;
 // Some drivers end loops that run longer.
 const MOST_ROUNDS: u32 = 60000u;
@@ -148,7 +150,9 @@ fn march_pixel(at: u32) -> u32 {
         var group = Gathered(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0);
         var end_m = 0.0;
         for (var s = 0u; s < MOST_STEPS && walk.alive && through > OPAQUE; s++) {
-            let taken = advance(&walk, view.eye_m, direction, far_m, Stepping(scene.step_depth, scene.step_layers));
+            // A step's error grows as the square of its depth, and counts as what is left of the ray.
+            let step_depth = scene.step_depth * min(inverseSqrt(through), MOST_PATIENCE);
+            let taken = advance(&walk, view.eye_m, direction, far_m, Stepping(step_depth, scene.step_layers));
             if taken.depth <= 0.0 {
                 continue;
             }

@@ -21,8 +21,8 @@ struct Walk {
     at_m: f32,
     triangle: u32,
     place: Place,
-    // Length of the next step by the last one's density, m.
-    expected_m: f32,
+    // Length per optical depth, by the last step, m.
+    per_depth_m: f32,
     // How far the last change of prism took the march along, m.
     push_m: f32,
     alive: bool,
@@ -139,7 +139,7 @@ fn advance(walk: ptr<function, Walk>, origin_m: vec3<f32>, direction: vec3<f32>,
     let thickness_m = length(j.up_m) / f32(scene.layers);
     let least_m = 1e-3 * thickness_m;
     let side = next_side((*walk).place, rates);
-    let longest_m = max(min(stepping.layers * thickness_m, (*walk).expected_m), least_m);
+    let longest_m = max(min(stepping.layers * thickness_m, (*walk).per_depth_m * stepping.depth), least_m);
     var length_m = min(min(longest_m, max(side.after_m, 0.0)), far_m - (*walk).at_m);
     if length_m > 0.0 {
         taken = step_of(*walk, j, rates, length_m, direction);
@@ -147,7 +147,7 @@ fn advance(walk: ptr<function, Walk>, origin_m: vec3<f32>, direction: vec3<f32>,
             length_m = max(length_m * stepping.depth / taken.depth, least_m);
             taken = step_of(*walk, j, rates, length_m, direction);
         }
-        (*walk).expected_m = stepping.depth * length_m / max(taken.depth, 1e-9);
+        (*walk).per_depth_m = length_m / max(taken.depth, 1e-9);
         (*walk).at_m += length_m;
         (*walk).place = moved((*walk).place, rates, length_m);
     }

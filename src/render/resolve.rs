@@ -1,11 +1,15 @@
 //! Guard hair, undercoat and skin of one pixel into one colour (Andersen et al. 2016 §3.3, `docs/steps/blend.md`).
 
 use super::strands::Fragment;
+use crate::data::film::Layers;
 use crate::math::Vec3;
 use crate::math::fast::exp_negative;
 
 /// Transmittance below which nothing behind can be seen.
 pub const OPAQUE: f32 = 1e-3;
+
+/// Transmittance of fragments behind which further ones are left out, with room for rounding against [`OPAQUE`].
+pub const HIDDEN: f32 = 0.5 * OPAQUE;
 
 /// How undercoat and guard hair are put into one order.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,25 +88,29 @@ enum Kind {
     Skin,
 }
 
-struct Front {
+/// What is in front so far; of `ALL` layers, or of radiance and alpha alone.
+struct Front<const ALL: bool> {
     pixel: Pixel,
     through: f32,
 }
 
-impl Front {
+impl<const ALL: bool> Front<ALL> {
+    #[inline(always)]
     fn add(&mut self, alpha: f32, face: &Face, kind: Kind) {
         let weight = self.through * alpha;
         self.pixel.radiance += weight * face.radiance;
-        self.pixel.albedo += weight * face.albedo;
-        self.pixel.tangent += weight * face.tangent;
-        self.pixel.normal += weight * face.normal;
-        self.pixel.z_m += weight * face.z_m;
-        match kind {
-            Kind::Guard => self.pixel.guard += weight,
-            Kind::Undercoat => self.pixel.undercoat += weight,
-            Kind::Skin => {}
-        }
         self.through -= weight;
+        if ALL {
+            self.pixel.albedo += weight * face.albedo;
+            self.pixel.tangent += weight * face.tangent;
+            self.pixel.normal += weight * face.normal;
+            self.pixel.z_m += weight * face.z_m;
+            match kind {
+                Kind::Guard => self.pixel.guard += weight,
+                Kind::Undercoat => self.pixel.undercoat += weight,
+                Kind::Skin => {}
+            }
+        }
     }
 
     /// The part of a stretch between two depths.
@@ -121,50 +129,78 @@ impl Front {
     }
 }
 
-/// Orders a pixel's fragments by (depth, id) and joins neighbouring pieces of one hair: together they cover it once.
-pub fn order(fragments: &mut Vec<Fragment>) {
-    fragments.sort_unstable_by_key(Fragment::order);
-    fragments.dedup_by(|next, kept| {
-        let same = next.id() == kept.id();
-        if same {
-            kept.coverage = (kept.coverage + next.coverage).min(1.0);
+/// Orders a pixel's fragments by (depth, id), joins neighbouring pieces of one hair, since together they cover it once,
+/// and leaves out what lies behind an opaque front: it could not be seen whatever else comes before it.
+///
+/// Returns how many are left. `veil` receives the transmittance up to and with each of them.
+pub fn settle(fragments: &mut [Fragment], veil: &mut [f32]) -> usize {
+    sort(fragments);
+    let (mut count, mut before, mut through) = (0, 1.0, 1.0);
+    for i in 0..fragments.len() {
+        let fragment = fragments[i];
+        if count > 0 && fragments[count - 1].id() == fragment.id() {
+            let coverage = &mut fragments[count - 1].coverage;
+            *coverage = (*coverage + fragment.coverage).min(1.0);
+        } else {
+            if through < HIDDEN {
+                break;
+            }
+            fragments[count] = fragment;
+            count += 1;
+            before = through;
         }
-        same
-    });
+        through = before * (1.0 - fragments[count - 1].alpha());
+        veil[count - 1] = through;
+    }
+    count
 }
 
-/// Orders a pixel's fragments and leaves out those that lie behind an opaque front; returns the depth from which on
-/// everything does, infinite where there is none. What is left out could not be seen whatever else comes in front.
-pub fn trim(fragments: &mut Vec<Fragment>, opacity: impl Fn(&Fragment) -> f32) -> f32 {
-    fragments.sort_unstable_by_key(Fragment::order);
-    let mut through = 1.0;
-    let seen = fragments.iter().position(|fragment| {
-        through *= 1.0 - fragment.coverage * opacity(fragment);
-        through < 0.1 * OPAQUE
-    });
-    match seen {
-        Some(last) => {
-            fragments.truncate(last + 1);
-            fragments[last].z_m()
+/// By [`Fragment::order`]. Few that are nearly in order, as most pixels have them, are best moved one by one.
+fn sort(fragments: &mut [Fragment]) {
+    const FEW: usize = 96;
+    if fragments.len() > FEW {
+        fragments.sort_unstable_by_key(Fragment::order);
+        return;
+    }
+    for i in 1..fragments.len() {
+        let fragment = fragments[i];
+        let mut at = i;
+        while at > 0 && fragments[at - 1].order() > fragment.order() {
+            fragments[at] = fragments[at - 1];
+            at -= 1;
         }
-        None => f32::INFINITY,
+        fragments[at] = fragment;
     }
 }
 
-/// Composites front to back. `fragments` are ordered by [`order`], `stretches` by where they begin; `face` says what a
-/// fragment's hair looks like and how opaque it is itself; `skin` lies behind all.
+/// Composites front to back. `fragments` are ordered by [`settle`], `stretches` by where they begin; `face` says what a
+/// fragment's hair looks like; `skin` lies behind all. [`Layers::Light`] leaves out what it does not hold.
 pub fn composite(
+    layers: Layers,
     fragments: &[Fragment],
     stretches: &[Stretch],
     blending: Blending,
     skin: Option<&Face>,
-    face: impl Fn(&Fragment) -> (Face, f32),
+    face: impl Fn(&Fragment) -> Face,
 ) -> Pixel {
-    let mut front = Front { pixel: Pixel::default(), through: 1.0 };
+    match layers {
+        Layers::Light => blend::<false>(fragments, stretches, blending, skin, face),
+        Layers::LightAndDepth | Layers::All => blend::<true>(fragments, stretches, blending, skin, face),
+    }
+}
+
+#[inline(always)]
+fn blend<const ALL: bool>(
+    fragments: &[Fragment],
+    stretches: &[Stretch],
+    blending: Blending,
+    skin: Option<&Face>,
+    face: impl Fn(&Fragment) -> Face,
+) -> Pixel {
+    let mut front = Front::<ALL> { pixel: Pixel::default(), through: 1.0 };
     let mut next = 0;
-    let hair = |front: &mut Front, fragment: &Fragment| {
-        let (look, opacity) = face(fragment);
-        front.add(fragment.coverage * opacity, &look, Kind::Guard);
+    let hair = |front: &mut Front<ALL>, fragment: &Fragment| {
+        front.add(fragment.alpha(), &face(fragment), Kind::Guard);
     };
     for stretch in stretches {
         if front.through < OPAQUE {
@@ -196,7 +232,7 @@ pub fn composite(
                         break;
                     }
                     // Weighted by the fragment's own opacity, so that a hair's thinner share of a pixel takes less.
-                    let own = fragment.coverage * face(fragment).1 * unoccluded;
+                    let own = fragment.alpha() * unoccluded;
                     alpha -= own * exp_negative(-attenuation_per_m * (fragment.z_m() - stretch.from_m));
                     unoccluded -= own;
                 }

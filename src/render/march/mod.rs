@@ -15,7 +15,7 @@ use volume::Volume;
 /// How finely rays are followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stepping {
-    /// Optical depth of a step, at most about this, in (0, 4].
+    /// Optical depth of a ray's first steps, at most about this, in (0, 4].
     pub depth: f32,
     /// Length of a step, at most, in layers' thicknesses, in (0, 16].
     pub layers: f32,
@@ -76,6 +76,10 @@ pub struct Steps<I: Isa> {
 pub trait Traveller<I: Isa> {
     /// The next ray, which starts in `lane`; none when all are on their way.
     fn next(&mut self, lane: usize) -> Option<Journey>;
+    /// Factors on the optical depth of the next steps: they may be the longer, the less of what they find counts.
+    fn patience(&self) -> F32s<I> {
+        F32s::splat(1.0)
+    }
     /// The ray in `lane` is now in prism `triangle`.
     fn enter(&mut self, _lane: usize, _triangle: u32) {}
     /// The rays in the lanes of `on` have made a step; says which may go on.
@@ -104,7 +108,7 @@ pub fn march<I: Isa, T: Traveller<I>>(volume: &Volume<'_>, stepping: &Stepping, 
         at_m: Row::default(),
         b: [Row::default(); 2],
         t: Row::default(),
-        expected_m: Row::default(),
+        per_depth_m: Row::default(),
         push_m: Row::default(),
         steps: [0; MOST],
         triangles: [0; MOST],
@@ -138,8 +142,8 @@ struct Flight<'v> {
     at_m: Row,
     b: [Row; 2],
     t: Row,
-    /// Length of a step that has the wanted optical depth, by the last step's density, m.
-    expected_m: Row,
+    /// Length per optical depth, by the last step's density, m.
+    per_depth_m: Row,
     /// How far the last change of prism took the march along, m.
     push_m: Row,
     steps: [u32; MOST],
@@ -177,7 +181,7 @@ fn board<'v, I: Isa, T: Traveller<I>>(
     flight.direction.set(lane, journey.direction);
     flight.far_m.0[lane] = journey.far_m;
     flight.at_m.0[lane] = journey.start.at_m;
-    flight.expected_m.0[lane] = f32::INFINITY;
+    flight.per_depth_m.0[lane] = f32::INFINITY;
     flight.push_m.0[lane] = 0.0;
     flight.steps[lane] = 0;
     flight.enter(volume, lane, journey.start.triangle, journey.start.place);
@@ -208,20 +212,22 @@ fn advance<'v, I: Isa, T: Traveller<I>>(
     let layer_m = j.up_m.length() * (1.0 / volume.layers() as f32);
     let least_m = layer_m * 1e-3;
     let (side, side_m) = next_side(&places, rates);
-    let longest_m = (layer_m * stepping.layers).min(F32s::of(&flight.expected_m)).max(least_m);
+    let depth = traveller.patience() * stepping.depth;
+    let expected_m = F32s::of(&flight.per_depth_m) * depth;
+    let longest_m = (layer_m * stepping.layers).min(expected_m).max(least_m);
     let mut length_m = longest_m.min(side_m.max(zero)).min(far_m - at_m);
     let walking = moving & length_m.gt(zero);
 
     let from = From { j, places, rates, at_m, direction };
     let mut steps = volume.steps(&flight.prisms, &flight.blocks, &from, length_m, walking);
-    let too_deep = walking & steps.depth.gt(F32s::splat(2.0 * stepping.depth)) & length_m.gt(least_m);
+    let too_deep = walking & steps.depth.gt(depth * 2.0) & length_m.gt(least_m);
     if too_deep.bits() != 0 {
-        let shorter_m = (length_m * stepping.depth / steps.depth).max(least_m);
+        let shorter_m = (length_m * depth / steps.depth).max(least_m);
         length_m = too_deep.select(shorter_m, length_m);
         steps = volume.steps(&flight.prisms, &flight.blocks, &from, length_m, walking);
     }
-    let expected_m = length_m * stepping.depth / steps.depth.max(F32s::splat(1e-9));
-    flight.expected_m = walking.select(expected_m, F32s::of(&flight.expected_m)).row();
+    let per_depth_m = length_m / steps.depth.max(F32s::splat(1e-9));
+    flight.per_depth_m = walking.select(per_depth_m, F32s::of(&flight.per_depth_m)).row();
     let seen = walking & steps.depth.gt(zero);
     let going = if seen.bits() == 0 { !seen } else { traveller.visit(&flight.prisms, &steps, seen) | !seen };
     let walked_m = walking.keep(length_m);

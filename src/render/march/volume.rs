@@ -12,10 +12,16 @@ use crate::render::shell::Shell;
 use crate::render::shell::block::{Block, Blocks, codes};
 use crate::render::shell::subelement;
 use crate::render::table::Table;
+use std::cell::Cell;
 use std::f32::consts::FRAC_PI_4;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
+
+thread_local! {
+    /// Time that this thread has spent on filling densities, ns: shadows take their own without it.
+    pub(super) static DENSITY_NS: Cell<u64> = const { Cell::new(0) };
+}
 
 /// How the volume is resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -190,7 +196,9 @@ impl<'a> Volume<'a> {
         cell.get_or_init(|| {
             let start = Instant::now();
             let block = lanes::run(Fill { volume: self, triangle });
-            self.density_ns.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
+            let ns = start.elapsed().as_nanos() as u64;
+            self.density_ns.fetch_add(ns, Ordering::Relaxed);
+            DENSITY_NS.set(DENSITY_NS.get() + ns);
             block
         })
     }

@@ -1,6 +1,7 @@
 //! A picture of a pelt through a camera: bands of rows, and tiles within them (`docs/steps/strands.md`).
 
 mod film;
+mod gather;
 mod pass;
 mod tile;
 mod undercoat;
@@ -126,6 +127,10 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
         let [density, shadow] = volume.bytes();
         let share = 1.0 / rayon::current_num_threads() as f64;
         let [density_ms, shadow_ms] = volume.filling_ms();
+        // Both are filled when a march first needs them.
+        if let Some(march) = picture.rows.iter_mut().find(|row| row.name == "march") {
+            march.ms = (march.ms - (density_ms + shadow_ms) * share).max(0.0);
+        }
         picture.rows.push(Row { name: "densities", ms: density_ms * share, bytes: density });
         picture.rows.push(Row { name: "shadows", ms: shadow_ms * share, bytes: shadow });
         picture.counts.subelements = density as u64;
@@ -159,8 +164,20 @@ pub(in crate::render) fn subdivisions(pelt: &Pelt<'_>, view: &View, resolution: 
         .collect()
 }
 
-fn row(picture: &mut Picture, name: &'static str, start: Instant, bytes: usize) {
+/// Rows of steps that ran tile by tile since `start`, by their shares of the threads' time.
+fn shares<const N: usize>(picture: &mut Picture, start: Instant, parts: [(&'static str, u64); N]) {
+    let all_ns: u64 = parts.iter().map(|(_, ns)| ns).sum();
     let ms = start.elapsed().as_secs_f64() * 1e3;
+    for (name, ns) in parts {
+        add_row(picture, name, ms * ns as f64 / all_ns.max(1) as f64, 0);
+    }
+}
+
+fn row(picture: &mut Picture, name: &'static str, start: Instant, bytes: usize) {
+    add_row(picture, name, start.elapsed().as_secs_f64() * 1e3, bytes);
+}
+
+fn add_row(picture: &mut Picture, name: &'static str, ms: f64, bytes: usize) {
     match picture.rows.iter_mut().find(|row| row.name == name) {
         Some(row) => {
             row.ms += ms;

@@ -1,8 +1,8 @@
 //! One pass over the picture: skin, then strands, band by band.
 
 use super::film::film_rows;
-use super::tile::Scratch;
-use super::{Picture, Settings, row};
+use super::tile::{Place, Scratch};
+use super::{Picture, Settings, row, shares};
 use crate::data::film::Film;
 use crate::data::strands::Strands;
 use crate::error::Result;
@@ -34,6 +34,8 @@ pub(super) struct Pass<'a> {
     pub(super) undercoat: Option<(&'a Volume<'a>, UndercoatShader<'a>)>,
     /// Opacity of a guard hair along it.
     pub(super) opacity: Table,
+    /// One over the pieces of a strand.
+    pub(super) per_piece: f32,
 }
 
 /// The strands of a band, ready to be drawn.
@@ -61,7 +63,9 @@ impl<'a> Pass<'a> {
         let skin_camera_m = pelt.skin.positions_m.iter().map(|&p| view.camera_from_world(p)).collect();
         let undercoat = volume.map(|volume| (volume, UndercoatShader::new(pelt, lighting)));
         let opacity = Table::new(|s| pelt.guard.map_or(1.0, |(strands, _)| strands.profile.opacity_at(s)));
-        Ok(Self { pelt, lighting, normals, view, settings, skin_camera_m, guard, undercoat, opacity })
+        let pieces = pelt.guard.map_or(1, |(strands, _)| strands.points_per_strand - 1);
+        let per_piece = 1.0 / pieces as f32;
+        Ok(Self { pelt, lighting, normals, view, settings, skin_camera_m, guard, undercoat, opacity, per_piece })
     }
 
     pub(super) fn run(&self, picture: &mut Picture) -> Film {
@@ -105,22 +109,36 @@ impl<'a> Pass<'a> {
             picture.counts.strands += band.strands.len() as u64;
 
             let start = Instant::now();
-            let [fragments, steps] = film_rows(&mut film, &grid)
+            let [fragments, steps, ribbons_ns, march_ns, compositing_ns] = film_rows(&mut film, &grid)
                 .map(|mut rows| {
                     let mut scratch = Scratch::default();
                     let row = rows.row;
                     for column in 0..grid.columns {
-                        let tile = (grid.first_row + row) * whole.columns + column;
+                        let in_picture = (grid.first_row + row) * whole.columns + column;
+                        let from = [column * TILE, (grid.first_row + row) * TILE];
+                        let to = [(from[0] + TILE).min(width), (from[1] + TILE).min(height)];
+                        let in_band = row * grid.columns + column;
+                        let place = Place { in_band, in_picture, from, to, skin: &tiles[in_picture] };
                         scratch.clear();
+                        let begun = Instant::now();
+                        self.gather(&place, &band, &mut scratch);
+                        let gathered = Instant::now();
                         if let Some(entrances) = &entrances {
-                            self.march_tile(entrances, tile, column, grid.first_row + row, &tiles[tile], &mut scratch);
+                            self.march(entrances, &place, &mut scratch);
                         }
-                        self.tile(&grid, column, row, &tiles[tile], &band, &mut scratch, &mut rows);
+                        let marched = Instant::now();
+                        self.compose(&place, &band, &scratch, &mut rows);
+                        let times = [gathered - begun, marched - gathered, marched.elapsed()];
+                        for (spent_ns, time) in scratch.spent_ns.iter_mut().zip(times) {
+                            *spent_ns += time.as_nanos() as u64;
+                        }
                     }
-                    [scratch.fragment_count, scratch.step_count]
+                    let [ribbons_ns, march_ns, compositing_ns] = scratch.spent_ns;
+                    [scratch.fragment_count, scratch.step_count, ribbons_ns, march_ns, compositing_ns]
                 })
-                .reduce(|| [0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
-            row(picture, "march and compositing", start, 0);
+                .reduce(|| [0; 5], |a, b| std::array::from_fn(|i| a[i] + b[i]));
+            let parts = [("ribbons", ribbons_ns), ("march", march_ns), ("compositing", compositing_ns)];
+            shares(picture, start, parts);
             picture.counts.fragments += fragments;
             picture.counts.steps += steps;
             picture.counts.pieces += band.bins.items() as u64;

@@ -1,155 +1,177 @@
 //! One tile of the picture: rays through undercoat, ribbons of guard hair, and both in one order.
 
+use super::Settings;
 use super::film::FilmRows;
+use super::gather::Gathered;
 use super::pass::{Band, Pass};
 use super::undercoat::{Look, PixelJourney};
+use crate::data::film::Layers;
 use crate::data::strands::Strands;
-use crate::math::{Vec2, Vec3, lanes};
-use crate::render::bins::{Grid, TILE};
+use crate::math::lanes::{self, Isa};
+use crate::math::{Vec2, Vec3};
+use crate::render::bins::TILE;
 use crate::render::flat::{self, Flat, pixel_ray};
 use crate::render::march::enter::Entrances;
 use crate::render::march::{Journey, Start};
 use crate::render::resolve::{self, Blending, Face, Stretch};
 use crate::render::skin::{self, NONE, SkinTile};
-use crate::render::strands::ribbon::{self, Share, Window};
+use crate::render::strands::ribbon::{self, Narrow, Share, Window};
 use crate::render::strands::{Fragment, Knot};
 
+/// A tile of the picture.
+#[derive(Clone, Copy)]
+pub(super) struct Place<'t> {
+    /// Index in the band's grid.
+    pub(super) in_band: usize,
+    /// Index in the whole picture's grid.
+    pub(super) in_picture: usize,
+    /// Its first pixel.
+    pub(super) from: [usize; 2],
+    /// One past its last pixel.
+    pub(super) to: [usize; 2],
+    pub(super) skin: &'t SkinTile,
+}
+
+impl Place<'_> {
+    /// Where a pixel of the picture lies in the tile.
+    #[inline(always)]
+    fn at(&self, x: usize, y: usize) -> usize {
+        (y - self.from[1]) * TILE + x - self.from[0]
+    }
+
+    fn pixels(self) -> impl Iterator<Item = (usize, usize, usize)> {
+        let columns = self.from[0]..self.to[0];
+        (self.from[1]..self.to[1]).flat_map(move |y| columns.clone().map(move |x| (self.at(x, y), x, y)))
+    }
+}
+
 impl Pass<'_> {
-    /// Draws one tile, over the undercoat that [`Self::march_tile`] found there.
-    #[expect(clippy::too_many_arguments, reason = "the tile's place and its inputs, each of another kind")]
-    pub(super) fn tile(
-        &self,
-        grid: &Grid,
-        column: usize,
-        row: usize,
-        skin_tile: &SkinTile,
-        band: &Band,
-        scratch: &mut Scratch,
-        out: &mut FilmRows<'_>,
-    ) {
-        let [width, height] = self.settings.size;
-        let (x0, y0) = (column * TILE, (grid.first_row + row) * TILE);
-        let window = Window {
-            from: [x0 as i32, y0 as i32],
-            to: [(x0 + TILE).min(width) as i32, (y0 + TILE).min(height) as i32],
-        };
-        let Scratch { pixels, stretches, opaque_m, trim_at, fragment_count, .. } = scratch;
-        if let Some((strands, _)) = &self.guard {
-            let points = strands.points_per_strand;
-            for &piece in band.bins.of(row * grid.columns + column) {
-                let (a, b) = (&band.knots[piece as usize], &band.knots[piece as usize + 1]);
-                let id = strands.id[band.strands[piece as usize / points] as usize];
-                ribbon::rasterise(a, b, window, |share| {
-                    let [x, y] = share.pixel.map(|v| v as usize);
-                    let at = (y - y0) * TILE + x - x0;
-                    let z_m = a.z_m + share.along * (b.z_m - a.z_m);
-                    let before_skin =
-                        z_m < skin_tile.z_m[at] || self.before_skin(a, b, &share, z_m, skin_tile.triangle[at]);
-                    if z_m <= opaque_m[at] && before_skin {
-                        let Share { coverage, along, .. } = share;
-                        pixels[at].push(Fragment::new(z_m, id, coverage, piece, along));
-                        *fragment_count += 1;
-                        if pixels[at].len() == trim_at[at] {
-                            let opaque = resolve::trim(&mut pixels[at], |f| self.opacity(strands, f));
-                            opaque_m[at] = opaque_m[at].min(opaque);
-                            trim_at[at] = TRIM_AT.max(2 * pixels[at].len());
-                        }
-                    }
-                });
-            }
+    /// Gathers the fragments of guard hair: nearest pieces first, so that most of those that hide behind them are never
+    /// drawn.
+    pub(super) fn gather(&self, place: &Place<'_>, band: &Band, scratch: &mut Scratch) {
+        let Scratch { guard, pieces, fragment_count, .. } = scratch;
+        guard.begin(|at| self.limit_m(place, at));
+        let Some((strands, _)) = &self.guard else { return };
+        pieces.clear();
+        // Positive floats are ordered as their bits.
+        let nearest_m = |piece: u32| band.knots[piece as usize].z_m.min(band.knots[piece as usize + 1].z_m).max(0.0);
+        let keyed = |&piece: &u32| u64::from(nearest_m(piece).to_bits()) << 32 | u64::from(piece);
+        pieces.extend(band.bins.of(place.in_band).iter().map(keyed));
+        pieces.sort_unstable();
+        let window = Window { from: place.from.map(|v| v as i32), to: place.to.map(|v| v as i32) };
+        lanes::run(Brush { pass: self, strands, place, band, pieces, window, guard });
+        *fragment_count += guard.len() as u64;
+        guard.settle();
+    }
+
+    /// Depth behind which a pixel's skin hides hair wherever in the pixel it stands, m; infinite where there is none.
+    fn limit_m(&self, place: &Place<'_>, at: usize) -> f32 {
+        let (x, y) = (place.from[0] + at % TILE, place.from[1] + at / TILE);
+        if x >= place.to[0] || y >= place.to[1] {
+            return f32::NEG_INFINITY;
         }
-        for y in y0..(y0 + TILE).min(height) {
-            for x in x0..(x0 + TILE).min(width) {
-                let at = (y - y0) * TILE + x - x0;
-                let fragments = &mut pixels[at];
-                resolve::order(fragments);
-                let skin_face = self.skin_face(x, y, skin_tile.triangle[at]);
-                let face = |f: &Fragment| match &self.guard {
-                    Some((strands, _)) => self.hair_face(strands, band, f),
-                    None => (Face::default(), 0.0),
-                };
-                let pixel =
-                    resolve::composite(fragments, &stretches[at], self.settings.blending, skin_face.as_ref(), face);
-                let depth_scale = pixel_ray(&self.view, x, y).length();
-                out.set(y - y0, x, &pixel, depth_scale);
+        let triangle = place.skin.triangle[at];
+        if triangle == NONE {
+            return f32::INFINITY;
+        }
+        let flat = Flat::new(self.corners(triangle));
+        let corner_m = |i: usize| {
+            let corner = Vec2::new((x + i % 2) as f32, (y + i / 2) as f32);
+            let z_m = flat.plane_depth(((corner - self.view.centre_px) / self.view.focal_px).extend(1.0));
+            if z_m > 0.0 { z_m } else { f32::INFINITY }
+        };
+        (0..4).map(corner_m).fold(place.skin.z_m[at], f32::max)
+    }
+
+    /// Puts what a tile's pixels hold into one order and colours the film.
+    pub(super) fn compose(&self, place: &Place<'_>, band: &Band, scratch: &Scratch, out: &mut FilmRows<'_>) {
+        let Settings { layers, blending, .. } = *self.settings;
+        for (at, x, y) in place.pixels() {
+            let skin_face = self.skin_face(x, y, place.skin.triangle[at]);
+            let face = |f: &Fragment| match &self.guard {
+                Some((strands, _)) => self.hair_face(strands, band, f),
+                None => Face::default(),
+            };
+            let (mut fragments, stretches) = (scratch.guard.of(at), &scratch.stretches[at]);
+            if let Blending::Simplified { .. } = blending {
+                // Hair thins the undercoat before it, but only as far as that lets it be seen.
+                fragments = &fragments[..fragments.partition_point(|f| f.z_m() <= scratch.opaque_m[at])];
             }
+            let pixel = resolve::composite(layers, fragments, stretches, blending, skin_face.as_ref(), face);
+            let depth_scale = pixel_ray(&self.view, x, y).length();
+            out.set(y - place.from[1], x, &pixel, depth_scale);
         }
     }
 
-    /// Marches the rays of one tile through the undercoat.
-    pub(super) fn march_tile(
-        &self,
-        entrances: &Entrances,
-        tile: usize,
-        column: usize,
-        row: usize,
-        skin_tile: &SkinTile,
-        scratch: &mut Scratch,
-    ) {
+    /// Marches the rays of one tile through the undercoat, as far as what [`Self::gather`] found lets it be seen.
+    pub(super) fn march(&self, entrances: &Entrances, place: &Place<'_>, scratch: &mut Scratch) {
         let Some((volume, shader)) = &self.undercoat else { return };
-        let [width, height] = self.settings.size;
-        let (x0, y0) = (column * TILE, row * TILE);
-        let Scratch { starts, journeys, stretches, opaque_m, step_count, .. } = scratch;
-        for (face, corners) in entrances.of_tile(tile) {
+        let Scratch { starts, journeys, stretches, opaque_m, guard, step_count, .. } = scratch;
+        for (face, corners) in entrances.of_tile(place.in_picture) {
             let flat = Flat::new(corners);
             let [columns, rows] = self.pixels(&flat::reach(&self.view, &corners));
-            for y in rows.start.max(y0)..rows.end.min(y0 + TILE) {
-                for x in columns.start.max(x0)..columns.end.min(x0 + TILE) {
-                    let at = (y - y0) * TILE + x - x0;
+            for y in rows.start.max(place.from[1])..rows.end.min(place.to[1]) {
+                for x in columns.start.max(place.from[0])..columns.end.min(place.to[0]) {
+                    let at = place.at(x, y);
                     let ray = pixel_ray(&self.view, x, y);
                     if let Some(meeting) = flat.meet(ray)
                         && flat.faces_eye()
-                        && meeting.z_m < skin_tile.z_m[at]
+                        && meeting.z_m < place.skin.z_m[at]
                     {
                         starts[at].push(entrances.start(face, meeting.barycentric, meeting.z_m * ray.length()));
                     }
                 }
             }
         }
-        journeys.clear();
-        for y in y0..(y0 + TILE).min(height) {
-            for x in x0..(x0 + TILE).min(width) {
-                let at = (y - y0) * TILE + x - x0;
-                starts[at].extend(entrances.around_eye());
-                if starts[at].is_empty() {
-                    continue;
-                }
-                // Faces that meet on a ray give one entrance each: the next march begins where the last one ended.
-                starts[at].sort_unstable_by(|a, b| a.at_m.total_cmp(&b.at_m).then(a.triangle.cmp(&b.triangle)));
-                starts[at].dedup_by(|next, kept| next.at_m - kept.at_m < 1e-6 * kept.at_m);
-                let direction = self.view.direction(Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
-                let scale = direction.length();
-                journeys.extend(starts[at].iter().map(|&start| PixelJourney {
-                    pixel: at as u32,
-                    z_per_m: 1.0 / scale,
-                    journey: Journey {
-                        origin_m: self.view.eye_m,
-                        direction: direction / scale,
-                        start,
-                        far_m: skin_tile.z_m[at] * scale,
-                    },
-                }));
+        let mut most = 0;
+        for (at, ..) in place.pixels() {
+            let starts = &mut starts[at];
+            starts.extend(entrances.around_eye());
+            // Faces that meet on a ray give one entrance each: the next march begins where the last one ended.
+            starts.sort_unstable_by(|a, b| a.at_m.total_cmp(&b.at_m).then(a.triangle.cmp(&b.triangle)));
+            starts.dedup_by(|next, kept| next.at_m - kept.at_m < 1e-6 * kept.at_m);
+            most = most.max(starts.len());
+            if let Blending::Virtual { .. } = self.settings.blending {
+                opaque_m[at] = guard.limit_m(at);
             }
         }
-        let fragments = match self.settings.blending {
-            Blending::Virtual { fragments } => fragments,
-            Blending::Simplified { .. } => 1,
+        let (fragments, veiled) = match self.settings.blending {
+            Blending::Virtual { fragments } => (fragments, Some(&*guard)),
+            Blending::Simplified { .. } => (1, None),
         };
-        *step_count += lanes::run(Look {
-            volume,
-            shader,
-            stepping: &self.settings.stepping,
-            fragments,
-            journeys,
-            stretches,
-            opaque_m,
-        });
-        // Rays of one pixel may be followed side by side.
-        stretches.iter_mut().for_each(|some| some.sort_by(|a, b| a.from_m.total_cmp(&b.from_m)));
+        // The first march of every pixel, then the second: what lies behind an opaque one is not followed.
+        for rank in 0..most {
+            journeys.clear();
+            for (at, x, y) in place.pixels() {
+                let Some(&start) = starts[at].get(rank) else { continue };
+                let direction = self.view.direction(Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
+                let scale = direction.length();
+                let far_m = opaque_m[at].min(place.skin.z_m[at]) * scale;
+                if start.at_m < far_m {
+                    let journey = Journey { origin_m: self.view.eye_m, direction: direction / scale, start, far_m };
+                    journeys.push(PixelJourney { pixel: at as u32, z_per_m: 1.0 / scale, journey });
+                }
+            }
+            *step_count += lanes::run(Look {
+                volume,
+                shader,
+                stepping: &self.settings.stepping,
+                fragments,
+                veiled,
+                journeys,
+                stretches,
+                opaque_m,
+            });
+        }
+        // Marches of one pixel may pass through one another.
+        if most > 1 {
+            stretches.iter_mut().for_each(|some| some.sort_by(|a, b| a.from_m.total_cmp(&b.from_m)));
+        }
     }
 
     /// Whether a hair that lies behind the skin of a pixel's middle lies before the skin of its own place: on slanting
     /// skin, half of the roots would else be lost.
+    #[inline(never)]
     fn before_skin(&self, a: &Knot, b: &Knot, share: &Share, z_m: f32, triangle: u32) -> bool {
         let at = |from: f32, to: f32, pixel: i32| {
             (from + share.linear * (to - from)).clamp(pixel as f32, (pixel + 1) as f32)
@@ -169,54 +191,163 @@ impl Pass<'_> {
         Some(skin::look(self.pelt, self.lighting, self.normals, triangle, b, direction, z_m))
     }
 
-    fn hair_face(&self, strands: &Strands, band: &Band, fragment: &Fragment) -> (Face, f32) {
-        let (at, points) = (fragment.knot as usize, strands.points_per_strand);
+    fn hair_face(&self, strands: &Strands, band: &Band, fragment: &Fragment) -> Face {
+        let at = fragment.knot as usize;
         let (a, b) = (&band.looks[at], &band.looks[at + 1]);
-        let of_strand = strands.points_of_m(band.strands[at / points] as usize);
-        let piece = at % points;
-        let face = Face {
+        let radiance = a.radiance.lerp(b.radiance, fragment.along);
+        if self.settings.layers == Layers::Light {
+            return Face { radiance, ..Face::default() };
+        }
+        // Division of shorter numbers takes half the time.
+        let strand = fragment.knot / strands.points_per_strand as u32;
+        let piece = at - strand as usize * strands.points_per_strand;
+        let of_strand = strands.points_of_m(band.strands[strand as usize] as usize);
+        Face {
             z_m: fragment.z_m(),
-            radiance: a.radiance.lerp(b.radiance, fragment.along),
+            radiance,
             albedo: a.albedo.lerp(b.albedo, fragment.along),
             tangent: (of_strand[piece + 1] - of_strand[piece]).normalize_or_zero(),
             normal: Vec3::ZERO,
-        };
-        (face, self.opacity(strands, fragment))
-    }
-
-    /// A hair's own opacity: it curves too much to go linearly between a strand's few points.
-    fn opacity(&self, strands: &Strands, fragment: &Fragment) -> f32 {
-        let points = strands.points_per_strand;
-        let piece = fragment.knot as usize % points;
-        self.opacity.at((piece as f32 + fragment.along) / (points - 1) as f32)
+        }
     }
 }
 
-/// Fragments of a pixel from which on it pays to look for an opaque front.
-const TRIM_AT: usize = 48;
+/// Draws pieces of strands into a tile, the nearest first.
+struct Brush<'a, 'p> {
+    pass: &'a Pass<'p>,
+    strands: &'a Strands,
+    place: &'a Place<'a>,
+    band: &'a Band,
+    /// Depth's bits and index of each piece.
+    pieces: &'a [u64],
+    window: Window,
+    guard: &'a mut Gathered,
+}
+
+impl lanes::Work for Brush<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: Isa>(mut self) {
+        for some in self.pieces.chunks(BOUND_EVERY) {
+            if f32::from_bits((some[0] >> 32) as u32) > self.guard.bound() {
+                break;
+            }
+            for &key in some {
+                self.piece::<I>(f32::from_bits((key >> 32) as u32), key as u32);
+            }
+        }
+    }
+}
+
+impl Brush<'_, '_> {
+    #[inline(always)]
+    fn piece<I: Isa>(&mut self, nearest_m: f32, piece: u32) {
+        let (a, b) = (&self.band.knots[piece as usize], &self.band.knots[piece as usize + 1]);
+        let Place { from, to, .. } = *self.place;
+        let pad = std::f32::consts::SQRT_2 * a.half_px.max(b.half_px);
+        let columns = within(a.x, b.x, pad, from[0], to[0]);
+        let rows = within(a.y, b.y, pad, from[1], to[1]);
+        if !self.guard.may_show(nearest_m, columns, rows) {
+            return;
+        }
+        let points = self.strands.points_per_strand as u32;
+        let strand = piece / points;
+        let id = self.strands.id[self.band.strands[strand as usize] as usize];
+        let stroke = Stroke { a, b, piece, first: (piece - strand * points) as f32, id };
+        let Some(narrow) = Narrow::new(a, b, self.window) else {
+            ribbon::rasterise(a, b, self.window, |share| {
+                let (z_m, opacity) = self.along(&stroke, share.along);
+                self.touch(&stroke, &share, z_m, opacity);
+            });
+            return;
+        };
+        let mut first = narrow.rows[0];
+        while first < narrow.rows[1] {
+            let found = narrow.rows::<I>(first);
+            for lane in 0..I::LANES.min((narrow.rows[1] - first) as usize) {
+                if found.count[lane] == 0 {
+                    continue;
+                }
+                let (row, begin) = (first + lane as i32, found.begin[lane] as i32);
+                let (linear, along) = (found.linear.0[lane], found.along.0[lane]);
+                let (z_m, opacity) = self.along(&stroke, along);
+                for k in 0..found.count[lane] as usize {
+                    let coverage = found.coverage[k].0[lane];
+                    if coverage > 0.0 {
+                        let x = begin + k as i32;
+                        let pixel = if narrow.flat { [row, x] } else { [x, row] };
+                        self.touch(&stroke, &Share { pixel, coverage, linear, along }, z_m, opacity);
+                    }
+                }
+            }
+            first += I::LANES as i32;
+        }
+    }
+
+    /// Depth and opacity along a piece.
+    #[inline(always)]
+    fn along(&self, stroke: &Stroke<'_>, along: f32) -> (f32, f32) {
+        let z_m = stroke.a.z_m + along * (stroke.b.z_m - stroke.a.z_m);
+        (z_m, self.pass.opacity.at((stroke.first + along) * self.pass.per_piece))
+    }
+
+    /// Adds a fragment where it may be seen.
+    #[inline(always)]
+    fn touch(&mut self, stroke: &Stroke<'_>, share: &Share, z_m: f32, opacity: f32) {
+        let (place, skin) = (self.place, self.place.skin);
+        let at = place.at(share.pixel[0] as usize, share.pixel[1] as usize);
+        if z_m <= self.guard.limit_m(at)
+            && (z_m < skin.z_m[at] || self.pass.before_skin(stroke.a, stroke.b, share, z_m, skin.triangle[at]))
+        {
+            let Stroke { piece, id, .. } = *stroke;
+            self.guard.push(at, Fragment::new(z_m, id, [share.coverage, opacity], piece, share.along));
+        }
+    }
+}
+
+/// A piece of a strand.
+struct Stroke<'a> {
+    a: &'a Knot,
+    b: &'a Knot,
+    piece: u32,
+    /// Its number along the strand.
+    first: f32,
+    id: u32,
+}
+
+/// Columns or rows of a tile that two knots and what lies between them touch.
+#[inline(always)]
+fn within(a: f32, b: f32, pad: f32, from: usize, to: usize) -> [usize; 2] {
+    let cut = |v: f32| ((v - from as f32).max(0.0) as i32 as usize).min(to - from - 1);
+    [cut(a.min(b) - pad), cut(a.max(b) + pad)]
+}
+
+/// Pieces drawn between looks at what is hidden by now.
+const BOUND_EVERY: usize = 128;
 
 /// What a tile's pixels hold, kept between tiles for its memory.
 pub(super) struct Scratch {
-    pixels: Vec<Vec<Fragment>>,
+    guard: Gathered,
+    /// Depth's bits and index of each piece in the tile.
+    pieces: Vec<u64>,
     starts: Vec<Vec<Start>>,
     journeys: Vec<PixelJourney>,
     stretches: Vec<Vec<Stretch>>,
-    /// Depth from which undercoat hides everything, m.
+    /// Depth from which on no undercoat is seen, m.
     opaque_m: Vec<f32>,
-    /// How many fragments a pixel gathers before those behind an opaque front are left out.
-    trim_at: Vec<usize>,
     pub(super) fragment_count: u64,
     pub(super) step_count: u64,
+    /// Time spent on ribbons, marching and compositing, ns.
+    pub(super) spent_ns: [u64; 3],
 }
 
 impl Scratch {
     /// Forgets the last tile.
     pub(super) fn clear(&mut self) {
-        self.pixels.iter_mut().for_each(Vec::clear);
         self.starts.iter_mut().for_each(Vec::clear);
         self.stretches.iter_mut().for_each(Vec::clear);
         self.opaque_m.fill(f32::INFINITY);
-        self.trim_at.fill(TRIM_AT);
     }
 }
 
@@ -224,14 +355,15 @@ impl Default for Scratch {
     fn default() -> Self {
         const SIZE: usize = TILE * TILE;
         Self {
-            pixels: vec![Vec::new(); SIZE],
+            guard: Gathered::default(),
+            pieces: Vec::new(),
             starts: vec![Vec::new(); SIZE],
             journeys: Vec::new(),
             stretches: vec![Vec::new(); SIZE],
             opaque_m: vec![f32::INFINITY; SIZE],
-            trim_at: vec![TRIM_AT; SIZE],
             fragment_count: 0,
             step_count: 0,
+            spent_ns: [0; 3],
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Rays from the eye through undercoat, gathered into virtual fragments.
 
+use super::gather::Gathered;
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, MOST, Mask, Row, Vec3Row, Vec3s, Work};
 use crate::render::march::light::UndercoatShader;
@@ -8,6 +9,10 @@ use crate::render::march::volume::Volume;
 use crate::render::march::{Journey, Stepping, Steps, Traveller, march};
 use crate::render::resolve::{OPAQUE, Stretch};
 use crate::render::shell::block::Blocks;
+use crate::render::strands::Fragment;
+
+/// How much deeper a ray's last steps may be than its first; as in `render/march.wgsl`.
+const MOST_PATIENCE: f32 = 4.0;
 
 /// A ray of a pixel, and where its depths are measured along the optical axis.
 #[derive(Clone, Copy, Debug)]
@@ -27,9 +32,11 @@ pub(super) struct Look<'a> {
     /// Most virtual fragments per ray.
     pub(super) fragments: u32,
     pub(super) journeys: &'a [PixelJourney],
+    /// Guard hair, where what it hides is to be left out.
+    pub(super) veiled: Option<&'a Gathered>,
     /// Virtual fragments by pixel.
     pub(super) stretches: &'a mut [Vec<Stretch>],
-    /// By pixel, depth from which undercoat hides everything, m.
+    /// By pixel, depth from which on no undercoat is seen, m.
     pub(super) opaque_m: &'a mut [f32],
 }
 
@@ -46,6 +53,8 @@ impl Work for Look<'_> {
             next: 0,
             current: [first; MOST],
             through: Row::default(),
+            veil: Row::default(),
+            hairs: [(&[], &[]); MOST],
             groups: Groups::default(),
             step_count: 0,
             look: self,
@@ -63,6 +72,10 @@ struct Sight<'a> {
     shadows: Blocks<'a>,
     fragments: f32,
     through: Row,
+    /// Transmittance of the guard hair passed so far.
+    veil: Row,
+    /// Guard hair not yet passed, and its transmittances.
+    hairs: [(&'a [Fragment], &'a [f32]); MOST],
     groups: Groups,
     step_count: u64,
 }
@@ -80,6 +93,21 @@ struct Groups {
 }
 
 impl Sight<'_> {
+    /// Takes account of the guard hairs that the ray in a lane has passed.
+    #[inline(always)]
+    fn pass_hairs(&mut self, lane: usize) {
+        let z_m = self.groups.to_m.0[lane] * self.current[lane].z_per_m;
+        let (fragments, veil) = self.hairs[lane];
+        let mut passed = 0;
+        while passed < fragments.len() && fragments[passed].z_m() < z_m {
+            passed += 1;
+        }
+        if passed > 0 {
+            self.veil.0[lane] = veil[passed - 1];
+            self.hairs[lane] = (&fragments[passed..], &veil[passed..]);
+        }
+    }
+
     /// Closes the virtual fragment of a lane.
     fn close(&mut self, lane: usize) {
         let groups = &mut self.groups;
@@ -110,7 +138,18 @@ impl<I: Isa> Traveller<I> for Sight<'_> {
         self.next += 1;
         self.current[lane] = current;
         self.through.0[lane] = 1.0;
+        self.veil.0[lane] = 1.0;
+        if let Some(guard) = self.look.veiled {
+            let pixel = current.pixel as usize;
+            self.hairs[lane] = (guard.of(pixel), guard.veil(pixel));
+        }
         Some(current.journey)
+    }
+
+    #[inline(always)]
+    fn patience(&self) -> F32s<I> {
+        // A step's error grows as the square of its depth, and counts as what is left of the ray.
+        (F32s::splat(1.0) / F32s::of(&self.through)).sqrt().within(1.0, MOST_PATIENCE)
     }
 
     #[inline(always)]
@@ -148,13 +187,21 @@ impl<I: Isa> Traveller<I> for Sight<'_> {
                 self.close(lane);
             }
         }
-        left.gt(F32s::splat(OPAQUE))
+        if self.look.veiled.is_some() {
+            let on = on.bits();
+            for lane in 0..I::LANES {
+                if on >> lane & 1 != 0 {
+                    self.pass_hairs(lane);
+                }
+            }
+        }
+        (left * F32s::of(&self.veil)).gt(F32s::splat(OPAQUE))
     }
 
     fn end(&mut self, lane: usize) {
         self.close(lane);
         let PixelJourney { pixel, z_per_m, .. } = self.current[lane];
-        if self.through.0[lane] <= OPAQUE {
+        if self.through.0[lane] * self.veil.0[lane] <= OPAQUE {
             let opaque_m = &mut self.look.opaque_m[pixel as usize];
             *opaque_m = opaque_m.min(self.groups.to_m.0[lane] * z_per_m);
         }

@@ -33,12 +33,14 @@ pub struct Knot {
 }
 
 /// A share of a pixel that a hair covers.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fragment {
     /// Depth's bits, then the hair's id: positive floats are ordered as their bits.
     order: u64,
     /// Covered share of the pixel, in (0, 1].
     pub coverage: f32,
+    /// The hair's own opacity there, in [0, 1].
+    pub opacity: f32,
     /// First knot of the piece.
     pub knot: u32,
     /// Where along the piece, in [0, 1].
@@ -46,22 +48,32 @@ pub struct Fragment {
 }
 
 impl Fragment {
-    /// Of hair `id` at depth `z_m` > 0 along the optical axis.
-    pub fn new(z_m: f32, id: u32, coverage: f32, knot: u32, along: f32) -> Self {
-        Self { order: u64::from(z_m.to_bits()) << 32 | u64::from(id), coverage, knot, along }
+    /// Of hair `id` at depth `z_m` > 0 along the optical axis, `along` the piece that begins at `knot`.
+    #[inline(always)]
+    pub fn new(z_m: f32, id: u32, [coverage, opacity]: [f32; 2], knot: u32, along: f32) -> Self {
+        Self { order: u64::from(z_m.to_bits()) << 32 | u64::from(id), coverage, opacity, knot, along }
+    }
+
+    /// What it hides of the pixel.
+    #[inline(always)]
+    pub fn alpha(&self) -> f32 {
+        self.coverage * self.opacity
     }
 
     /// Depth along the optical axis, m.
+    #[inline(always)]
     pub fn z_m(&self) -> f32 {
         f32::from_bits((self.order >> 32) as u32)
     }
 
     /// Source index of the hair.
+    #[inline(always)]
     pub fn id(&self) -> u32 {
         self.order as u32
     }
 
     /// Sorts by depth, then id, then piece.
+    #[inline(always)]
     pub fn order(&self) -> (u64, u32) {
         (self.order, self.knot)
     }
