@@ -83,6 +83,21 @@ impl Rays {
         Self { volume, rays }
     }
 
+    /// Parallel rays through the tops of two prisms, in rows.
+    fn of_pixels(d: u8) -> Self {
+        let volume = volume(d);
+        let mut rays = Vec::new();
+        for i in 0..RAYS as u32 {
+            let (x, y) = ((i % 32) as f32, (i / 32 % 32) as f32);
+            let place = Place { b: [0.15 + x / 96.0, 0.15 + y / 96.0], t: 1.0 };
+            let triangle = 10 + i / 1024;
+            let direction = Vec3::new(0.6, -0.5, -0.6).normalize();
+            let start = Start { at_m: 0.0, triangle, place };
+            rays.push((volume.shell().prism(triangle).jacobian(&place).at_m, direction, start));
+        }
+        Self { volume, rays }
+    }
+
     fn depths(&self) -> Vec<f32> {
         let journey = |&(origin_m, direction, start): &(Vec3, Vec3, Start)| Journey {
             origin_m,
@@ -214,6 +229,14 @@ fn meet(origin: Vec3, direction: Vec3, a: Vec3, b: Vec3, c: Vec3) -> Option<f32>
 fn march_by_neighbours(bencher: divan::Bencher, d: u8) {
     let rays = Rays::new(d);
     // Sub-elements are filled before the clock starts, as the hierarchy is built.
+    rays.depths();
+    bencher.bench_local(|| rays.depths());
+}
+
+/// Rays as a picture's pixels send them: side by side, two thirds of a sub-element of d = 6 apart.
+#[divan::bench(args = [0, 1, 2, 3, 4, 5, 6], sample_count = 20, sample_size = 1)]
+fn march_of_pixels(bencher: divan::Bencher, d: u8) {
+    let rays = Rays::of_pixels(d);
     rays.depths();
     bencher.bench_local(|| rays.depths());
 }

@@ -50,12 +50,11 @@ pub fn simplex_lanes<I: Isa>(p: Vec3s<I>, seed: u32) -> F32s<I> {
     let cell = Vec3s::new((p.x + skew).floor(), (p.y + skew).floor(), (p.z + skew).floor());
     let unskew = (cell.x + cell.y + cell.z) * (1.0 / 6.0);
     let x0 = Vec3s::new(p.x - (cell.x - unskew), p.y - (cell.y - unskew), p.z - (cell.z - unskew));
-    let (xy, yz, zx) = (ge(x0.x, x0.y), ge(x0.y, x0.z), ge(x0.z, x0.x));
-    let one = F32s::splat(1.0);
-    let rank = Vec3s::new(xy + (one - zx), (one - xy) + yz, (one - yz) + zx);
-    let two = F32s::splat(2.0);
-    let first = Vec3s::new(ge(rank.x, two), ge(rank.y, two), ge(rank.z, two));
-    let second = Vec3s::new(ge(rank.x, one), ge(rank.y, one), ge(rank.z, one));
+    let (xy, yz, zx) = (x0.x.lt(x0.y), x0.y.lt(x0.z), x0.z.lt(x0.x));
+    let (zero, one) = (F32s::splat(0.0), F32s::splat(1.0));
+    // A coordinate is first where it is no less than the next and more than the one before, and last the other way.
+    let first = Vec3s::new((!xy & zx).keep(one), (xy & !yz).keep(one), (yz & !zx).keep(one));
+    let second = Vec3s::new((xy & !zx).select(zero, one), (!xy & yz).select(zero, one), (!yz & zx).select(zero, one));
     let mut sum = F32s::splat(0.0);
     for (corner, unskew) in [(Vec3s::all(0.0), 0.0), (first, 1.0 / 6.0), (second, 1.0 / 3.0), (Vec3s::all(1.0), 0.5)] {
         let d = (x0 - corner).plus(F32s::splat(unskew));
@@ -64,11 +63,6 @@ pub fn simplex_lanes<I: Isa>(p: Vec3s<I>, seed: u32) -> F32s<I> {
         sum = sum + fall.gt(F32s::splat(0.0)).keep(term);
     }
     sum * 32.0
-}
-
-#[inline(always)]
-fn ge<I: Isa>(a: F32s<I>, b: F32s<I>) -> F32s<I> {
-    a.lt(b).select(F32s::splat(0.0), F32s::splat(1.0))
 }
 
 #[inline(always)]
@@ -85,12 +79,9 @@ fn gradient_lanes<I: Isa>(corner: Vec3s<I>, seed: u32) -> Vec3s<I> {
     // Bits 31 and 30 become signs.
     let u = h.and(0x8000_0000).or(1.0_f32.to_bits()).to_f32_bits();
     let v = h.shl::<1>().and(0x8000_0000).or(1.0_f32.to_bits()).to_f32_bits();
-    // (h >> 8) mod 3, exact in numbers of 24 bits: a quotient that rounding left one too large gives −1.
-    let x = h.shr::<8>().signed_to_f32();
-    let rest = x - (x * (1.0 / 3.0)).floor() * 3.0;
-    let (half, three_halves) = (F32s::splat(0.5), F32s::splat(1.5));
-    let rest = rest.lt(F32s::splat(-0.5)).select(rest + 3.0, rest);
-    let rest = rest.lt(F32s::splat(2.5)).select(rest, rest - 3.0);
-    let (is_0, is_2) = (rest.lt(half), rest.gt(three_halves));
-    Vec3s::new((!is_2).keep(u), is_0.select(v, is_2.keep(u)), (!is_0).keep(v))
+    // n = h >> 8 has 24 bits, so that 2³² n/3, less whole turns, has n mod 3 in its highest two.
+    let third = h.shr::<8>().times(U32s::splat(0x5555_5556));
+    let zero = F32s::splat(0.0);
+    let (is_2, is_1) = (third.signed_to_f32().lt(zero), third.shl::<1>().signed_to_f32().lt(zero));
+    Vec3s::new(is_2.select(zero, u), is_1.select(zero, is_2.select(u, v)), (is_1 | is_2).keep(v))
 }
