@@ -41,6 +41,7 @@ mod ribbons;
 mod runtime;
 mod seams;
 mod shaders;
+mod shadows;
 mod silhouette;
 mod sphere;
 mod strand_files;

@@ -101,7 +101,7 @@ fn structs_lie_as_in_rust() {
 fn structs_of_kernels_lie_as_in_rust() {
     let (strands, march, density) = (kernel(kernels::STRANDS), kernel(kernels::MARCH), kernel(kernels::DENSITY));
     for (module, name, rust) in [
-        (&strands, "Kind", in_rust!(KindUniform { area_per_m, height_m, variation, unused })),
+        (&strands, "Kind", in_rust!(KindUniform { area_per_m, height_m, variation, top_m })),
         (&strands, "Lobe", in_rust!(LobeUniform { albedo, shift_rad, scale, unused })),
         (
             &strands,

@@ -32,7 +32,8 @@ struct Front {
     undercoat: f32,
 }
 
-fn look_of(point: u32) -> vec3<f32> {
+// Logarithm of the opaque hair's radiance: shadow, and radiance with it, goes exponentially from point to point.
+fn log_look_of(point: u32) -> vec3<f32> {
     return vec3(looks[3u * point], looks[3u * point + 1u], looks[3u * point + 2u]);
 }
 
@@ -44,7 +45,7 @@ fn add_hair(front: ptr<function, Front>, fragment: Fragment) {
     let weight = (*front).through * opacity_of(fragment);
     let ramp = mix(guard_ramp(along_hair(fragment.point, 0.0)), guard_ramp(along_hair(fragment.point, 1.0)), fragment.along);
     let tangent = unit_or(point_of(fragment.point + 1u) - point_of(fragment.point), vec3(0.0));
-    (*front).radiance += weight * mix(look_of(fragment.point), look_of(fragment.point + 1u), fragment.along);
+    (*front).radiance += weight * exp(mix(log_look_of(fragment.point), log_look_of(fragment.point + 1u), fragment.along));
     (*front).albedo += weight * strands[fragment.point / scene.points_per_strand].tint * ramp;
     (*front).tangent += weight * tangent;
     (*front).z_m += weight * fragment.z_m;

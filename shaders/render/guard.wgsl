@@ -1,7 +1,7 @@
 // Guard hair as camera-facing ribbons: one thread per piece of a strand, first to count the fragments of every pixel, then to
 // fill the pixels' lists (docs/steps/strands.md).
 #import furrier::scene::{scene, triangles, vertices, strands, point_of}
-#import furrier::camera::{view, totals, OVERFLOW, camera_from_world, pixel_at, flat_of, plane_depth, skin_z, skin_triangle, opaque_m, spans, cursors}
+#import furrier::camera::{view, totals, OVERFLOW, camera_from_world, pixel_at, faces_eye, flat_of, plane_depth, skin_z, skin_triangle, opaque_m, spans, cursors}
 #import furrier::guard::radius_factor
 
 override FILL: bool = false;
@@ -36,11 +36,13 @@ fn ramp(v: f32, drift: f32) -> f32 {
     return 0.5 * (v + half) * (v + half) / drift;
 }
 
-// Whether a hair behind the skin of a pixel's middle lies before the skin of its own place.
+// Whether a hair lies before the skin of a pixel's middle or, on the side that hair grows on, of its own place; seen from
+// its bare side, skin hides what lies behind either.
 fn before_skin(at: u32, place: vec2<f32>, z_m: f32) -> bool {
+    let before_middle = z_m < skin_z(at);
     let named = atomicLoad(&skin_triangle[at]);
     if named == 0u {
-        return false;
+        return before_middle;
     }
     let c = triangles[~named].corners;
     let shape = flat_of(
@@ -48,7 +50,8 @@ fn before_skin(at: u32, place: vec2<f32>, z_m: f32) -> bool {
         camera_from_world(vertices[c.y].position_m),
         camera_from_world(vertices[c.z].position_m),
     );
-    return z_m < plane_depth(shape, vec3((place - view.centre_px) / view.focal_px, 1.0));
+    let before_own = z_m < plane_depth(shape, vec3((place - view.centre_px) / view.focal_px, 1.0));
+    return select(before_middle && before_own, before_middle || before_own, faces_eye(shape));
 }
 
 // Point `i` of a strand in camera axes; where it lies behind the near plane, where its hair passes that.
@@ -163,7 +166,7 @@ fn guard(
                 continue;
             }
             let inside = clamp(place, vec2<f32>(pixel), vec2<f32>(pixel + 1));
-            if z_m < skin_z(at) || before_skin(at, inside, z_m) {
+            if before_skin(at, inside, z_m) {
                 put(at, z_m, point, min(coverage, 1.0), along);
             }
         }

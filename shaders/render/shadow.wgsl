@@ -1,13 +1,15 @@
-// Fills the stored shadow, the optical depth of undercoat towards the key light: one thread per column of sub-elements
-// and layer.
-#import furrier::scene::{scene, triangles, lights}
-#import furrier::prism::{Place, jacobian, subelement_centre}
+// Fills the stored shadow, the optical depth of undercoat, and of guard hair in the mean, towards the key light: one thread
+// per corner of sub-elements and level.
+#import furrier::scene::{scene, triangles, lights, NOTHING}
+#import furrier::prism::{Place, jacobian, corners_of, corner_place}
 #import furrier::undercoat::code_value
 #import furrier::march::{advance, walk_from, Stepping, MOST_STEPS}
 #import furrier::blocks::{blocks, write_byte, owner_of}
+#import furrier::mean_shadow::{mean_depths, tips_m}
 
-// Optical depth beyond which no light is left.
-const DARK: f32 = 6.0;
+// Optical depth beyond which no light is left; the same beside an open border.
+const DARK: f32 = 8.0;
+const DARK_AT_BORDERS: f32 = 15.0;
 
 @compute @workgroup_size(64)
 fn shadow(
@@ -16,22 +18,25 @@ fn shadow(
     @builtin(local_invocation_index) local: u32,
 ) {
     let index = (group.y * groups.x + group.x) * 64u + local;
-    let layer = index % scene.layers;
-    let column = index / scene.layers;
+    let level = index % (scene.layers + 1u);
+    let column = index / (scene.layers + 1u);
     if column >= blocks.columns {
         return;
     }
     let triangle = owner_of(column);
     let first = triangles[triangle].shadow_at;
     let d = triangles[triangle].shadow_splits;
-    let element = column - first;
-    let b = subelement_centre(element, d);
-    var walk = walk_from(0.0, triangle, Place(b.yz, (f32(layer) + 0.5) / f32(scene.layers)));
+    let corner = column - first;
+    let b = corner_place(corner, d);
+    let t = f32(level) / f32(scene.layers);
+    var walk = walk_from(0.0, triangle, Place(b.yz, t));
     let origin_m = jacobian(walk.prism, walk.place).at_m;
+    let enough = select(DARK, DARK_AT_BORDERS, any(triangles[triangle].beyond == vec3(NOTHING)));
     var depth = 0.0;
-    for (var i = 0u; i < MOST_STEPS && walk.alive && depth < DARK; i++) {
+    for (var i = 0u; i < MOST_STEPS && walk.alive && depth < enough; i++) {
         // Steps towards the light may be long: what they miss is blurred by the shadow's own resolution.
         depth += advance(&walk, origin_m, lights[0].to_light, 1e30, Stepping(1.0, 4.0)).depth;
     }
-    write_byte(first * scene.layers + (layer << (2u * d)) + element, code_value(depth));
+    depth += mean_depths(triangle, b, t * scene.undercoat_kind.top_m / tips_m()).y;
+    write_byte(first * (scene.layers + 1u) + level * corners_of(d) + corner, code_value(depth));
 }

@@ -1,35 +1,29 @@
-// Light on guard hair, one thread per point of a strand, as src/render/strands/shade.rs.
-#import furrier::scene::{scene, strands, lights, point_of, normal_at, lean_at, density_at, length_at, unit_or}
+// Light on guard hair, one thread per strand, as src/render/strands/shade.rs.
+#import furrier::scene::{scene, Strand, strands, lights, point_of, normal_at, lean_at, density_at, length_at, unit_or}
 #import furrier::camera::view
 #import furrier::guard::{guard_ramp, root_of}
 #import furrier::fur_light::{angles_of, cos_of, guard_lobes, shadow_power, slant_depth, sky_depth, terminator, above_both}
+#import furrier::mean_shadow::{mean_depths, tips_m}
 
-// Radiance by point, three numbers each.
+// Logarithm of radiance by point, three numbers each.
 @group(3) @binding(0) var<storage, read_write> looks: array<f32>;
 
-@compute @workgroup_size(64)
-fn shade(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = (group.y * groups.x + group.x) * 64u + local;
-    if index >= scene.strand_count * scene.points_per_strand {
-        return;
-    }
-    let strand = strands[index / scene.points_per_strand];
-    let i = index % scene.points_per_strand;
+// A point that no light reaches must not brighten its neighbours.
+const MOST_BEND: f32 = 0.25;
+
+// Logarithm of what point `i` of a strand sends to the eye.
+fn log_look(strand: Strand, first: u32, i: u32) -> vec3<f32> {
     let last = scene.points_per_strand - 1u;
     let b = root_of(strand);
     let normal = normal_at(strand.triangle, b);
     let lean = lean_at(strand.triangle, b, normal);
-    let first = index - i;
-    let point_m = point_of(index);
+    let point_m = point_of(first + i);
     let behind = point_of(first + max(i, 1u) - 1u);
     let along = unit_or(point_of(first + min(i + 1u, last)) - behind, lean);
     // Height along the lean, so that a leaning coat's layers are as thick as its hairs are long.
     let height_m = dot(point_m - point_of(first), normal) / max(dot(lean, normal), 0.05);
-    let above = above_both(density_at(strand.triangle, b), length_at(strand.triangle, b), height_m);
+    let length = length_at(strand.triangle, b);
+    let above = above_both(density_at(strand.triangle, b), length, height_m);
     let albedo = strand.tint * guard_ramp(f32(i) / f32(last));
     let to_eye = unit_or(view.eye_m - point_m, normal);
 
@@ -44,10 +38,57 @@ fn shade(
         let angles = angles_of(along, light.to_light, to_eye);
         let s = guard_lobes(angles);
         let scattered = vec3(s.x) + albedo * s.y + albedo * albedo * s.z;
-        let depth = slant_depth(above, light.to_light, normal, lean);
+        var depth = 0.0;
+        if k == 0u {
+            // Hair is shadowed as the column over its own root is at its height.
+            let depths = mean_depths(strand.triangle, b, height_m / max(tips_m() * length, 1e-30));
+            depth = depths.x + depths.y;
+        } else {
+            depth = slant_depth(above, light.to_light, normal, lean);
+        }
         sum += light.irradiance * scattered * exp(-power * depth) * (cos_of(angles.sin_in) * open);
     }
-    looks[3u * index] = sum.x;
-    looks[3u * index + 1u] = sum.y;
-    looks[3u * index + 2u] = sum.z;
+    return log(max(sum, vec3(1.1754944e-38)));
+}
+
+fn put(index: u32, look: vec3<f32>) {
+    looks[3u * index] = look.x;
+    looks[3u * index + 1u] = look.y;
+    looks[3u * index + 2u] = look.z;
+}
+
+@compute @workgroup_size(64)
+fn shade(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = (group.y * groups.x + group.x) * 64u + local;
+    if index >= scene.strand_count {
+        return;
+    }
+    let strand = strands[index];
+    let first = index * scene.points_per_strand;
+    let last = scene.points_per_strand - 1u;
+    var before = log_look(strand, first, 0u);
+    var here = log_look(strand, first, 1u);
+    if last < 2u {
+        put(first, before);
+        put(first + 1u, here);
+        return;
+    }
+    // Points are moved so that straight lines between them keep to the curve in the mean: they stray from it by a twelfth of
+    // its second difference.
+    var bend = vec3(0.0);
+    for (var i = 1u; i < last; i++) {
+        let next = log_look(strand, first, i + 1u);
+        bend = clamp((before - here - here + next) / 12.0, vec3(-MOST_BEND), vec3(MOST_BEND));
+        if i == 1u {
+            put(first, before - bend);
+        }
+        put(first + i, here - bend);
+        before = here;
+        here = next;
+    }
+    put(first + last, here - bend);
 }

@@ -91,3 +91,31 @@ fn subelement_centre(index: u32, d: u32) -> vec3<f32> {
     let at = vec3(f32(row), f32((sum + across) / 2), f32((sum - across) / 2));
     return 1.0 - (at + rest) / f32(n);
 }
+
+// Corners of the sub-elements of a level split d times: src/render/shell/lattice.rs.
+fn corners_of(d: u32) -> u32 {
+    let n = 1u << d;
+    return (n + 1u) * (n + 2u) / 2u;
+}
+
+// Index of the corner `i` steps towards corner 1 and `j` towards corner 2.
+fn corner_index(i: u32, j: u32, d: u32) -> u32 {
+    return j * (2u * (1u << d) + 3u - j) / 2u + i;
+}
+
+// Barycentric coordinates of a corner.
+fn corner_place(index: u32, d: u32) -> vec3<f32> {
+    let n = 1u << d;
+    let side = f32(2u * n + 3u);
+    var j = u32(max(0.5 * (side - sqrt(max(side * side - 8.0 * f32(index), 0.0))), 0.0));
+    // The root may be rounded to either side.
+    j = min(j, n);
+    while j > 0u && corner_index(0u, j, d) > index {
+        j--;
+    }
+    while j < n && corner_index(0u, j + 1u, d) <= index {
+        j++;
+    }
+    let i = index - corner_index(0u, j, d);
+    return vec3(f32(n - i - j), f32(i), f32(j)) / f32(n);
+}

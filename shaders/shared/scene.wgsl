@@ -16,7 +16,8 @@ struct Kind {
     height_m: f32,
     // Standard deviation of height over its mean.
     variation: f32,
-    unused: f32,
+    // Height of the tallest where the length field is 1, m.
+    top_m: f32,
 }
 
 // A lobe along the hair: albedo, shift in rad, -1/(2σ²).
@@ -136,7 +137,7 @@ struct Strand {
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var<storage, read> triangles: array<Triangle>;
 @group(0) @binding(2) var<storage, read> vertices: array<Vertex>;
-// Share of hairs that reach a height; hair area above it, of undercoat and of both kinds.
+// Share of hairs that reach a height; hair area above it, of both kinds; by vertex, what shared/mean_shadow.wgsl reads.
 @group(0) @binding(3) var<storage, read> tables: array<f32>;
 // The first is the key.
 @group(0) @binding(4) var<storage, read> lights: array<Light>;

@@ -3,6 +3,7 @@
 
 #import furrier::scene::{scene, lights, normal_at, lean_at, tint_at, density_at, length_at}
 #import furrier::fur_light::{above_both, sky_depth, slant_depth, terminator, PI}
+#import furrier::mean_shadow::{mean_depths, tips_m}
 
 struct SkinLook {
     radiance: vec3<f32>,
@@ -24,7 +25,12 @@ fn skin_look(triangle: u32, b: vec3<f32>, direction: vec3<f32>) -> SkinLook {
         let light = lights[i];
         let cosine = dot(light.to_light, normal);
         if cosine > 0.0 {
-            let shadow = exp(-slant_depth(above, light.to_light, normal, lean));
+            var depth = slant_depth(above, light.to_light, normal, lean);
+            if i == 0u && !back && tips_m() > 0.0 {
+                let depths = mean_depths(triangle, b, 0.0);
+                depth = depths.x + depths.y;
+            }
+            let shadow = exp(-depth);
             radiance += light.irradiance * albedo * (cosine * shadow * terminator(light.to_light, normal) / PI);
         }
     }

@@ -2,27 +2,45 @@
 #define_import_path furrier::undercoat_look
 
 #import furrier::scene::{scene, triangles, lights, tint_at, normal_at, density_at, length_at, table_at}
-#import furrier::prism::{barycentric, subelement}
+#import furrier::prism::{barycentric, corners_of, corner_index}
 #import furrier::undercoat::decode_value
 #import furrier::march::Step
 #import furrier::fur_light::{angles_of, cos_of, kajiya_kay, shadow_power, slant_depth, sky_depth, terminator}
 
-// Bytes by layer, then sub-element; of all prisms one after the other.
+// Bytes by level, then corner of sub-elements; of all prisms one after the other.
 @group(1) @binding(1) var<storage, read> shadow: array<u32>;
 
 fn shadow_byte(byte: u32) -> f32 {
     return decode_value((shadow[byte >> 2u] >> (8u * (byte & 3u))) & 255u);
 }
 
-// Optical depth of undercoat towards the key light, linear between the middles of layers.
+// Optical depth towards the key light, linear between the three corners and two levels around a place.
 fn key_depth(triangle: u32, b: vec3<f32>, t: f32) -> f32 {
     let d = triangles[triangle].shadow_splits;
-    let first = triangles[triangle].shadow_at * scene.layers + subelement(b, d);
-    let at = clamp(t * f32(scene.layers) - 0.5, 0.0, f32(scene.layers - 1u));
-    let low = u32(at);
-    let from_depth = shadow_byte(first + (low << (2u * d)));
-    let to_depth = shadow_byte(first + (min(low + 1u, scene.layers - 1u) << (2u * d)));
-    return from_depth + (at - f32(low)) * (to_depth - from_depth);
+    let n = f32(1u << d);
+    let uv = clamp(b.yz * n, vec2(0.0), vec2(n));
+    let j = min(floor(uv.y), n - 1.0);
+    let i = min(floor(uv.x), n - 1.0 - j);
+    let f = uv - vec2(i, j);
+    let rest = 1.0 - f.x - f.y;
+    // The sub-element that points the other way; none beyond the edge opposite to corner 0, where rounding may lead.
+    let turned = rest < 0.0 && i + j < n - 1.0;
+    let at_i = u32(i);
+    let at_j = u32(j);
+    let shift = select(0u, 1u, turned);
+    let corners = vec3(
+        corner_index(at_i + shift, at_j + shift, d),
+        corner_index(at_i + 1u, at_j, d),
+        corner_index(at_i, at_j + 1u, d),
+    );
+    let weights = select(vec3(rest, f), vec3(-rest, 1.0 - f.yx), turned);
+    let at = clamp(t, 0.0, 1.0) * f32(scene.layers);
+    let low = min(u32(at), scene.layers - 1u);
+    let below = triangles[triangle].shadow_at * (scene.layers + 1u) + low * corners_of(d) + corners;
+    let above = below + corners_of(d);
+    let from_depth = dot(weights, vec3(shadow_byte(below.x), shadow_byte(below.y), shadow_byte(below.z)));
+    let to_depth = dot(weights, vec3(shadow_byte(above.x), shadow_byte(above.y), shadow_byte(above.z)));
+    return max(from_depth + (at - f32(low)) * (to_depth - from_depth), 0.0);
 }
 
 fn undercoat_ramp(t: f32) -> vec3<f32> {
@@ -46,8 +64,7 @@ fn undercoat_look(taken: Step, direction: vec3<f32>) -> Look {
     let albedo = tint_at(taken.triangle, b) * undercoat_ramp(t);
     let power = shadow_power(albedo * scene.undercoat_albedo);
     let factor = density_at(taken.triangle, b) * length_at(taken.triangle, b);
-    let own = factor * table_at(1u, t);
-    let above = factor * table_at(2u, t);
+    let above = factor * table_at(1u, t);
     let normal = normal_at(taken.triangle, b);
     var radiance = scene.ambient * albedo * scene.undercoat_albedo * exp(-power * sky_depth(above));
     for (var i = 0u; i < scene.undercoat_light_count; i++) {
@@ -58,7 +75,7 @@ fn undercoat_look(taken: Step, direction: vec3<f32>) -> Look {
         }
         var depth = 0.0;
         if i == 0u {
-            depth = key_depth(taken.triangle, b, t) + slant_depth(above - own, light.to_light, normal, taken.hair);
+            depth = key_depth(taken.triangle, b, t);
         } else {
             depth = slant_depth(above, light.to_light, normal, taken.hair);
         }

@@ -15,7 +15,7 @@ use crate::render::develop::{Development, develop};
 use crate::render::device::{Device, Drawn};
 use crate::render::pelt::Lighting;
 use crate::render::picture::{Counts, Picture, Row, Settings};
-use crate::render::reference::{self, GuardShadow};
+use crate::render::reference;
 use crate::render::resolve::Blending;
 use crate::render::view::View;
 use crate::shade::environment::Environment;
@@ -92,9 +92,6 @@ pub struct Render {
     /// Where the rays of a reference pass: two pictures of different numbers tell its noise
     #[arg(long, value_name = "N", default_value_t = 0)]
     ray_seed: u64,
-    /// How a reference lets guard hair shadow: as the renderer does, or followed through the coat
-    #[arg(long, value_enum, default_value = "flat")]
-    reference_shadow: ReferenceShadow,
     /// Which hair to draw
     #[arg(long, value_enum, default_value = "hybrid")]
     only: Hair,
@@ -132,14 +129,6 @@ enum Quality {
     Final,
     /// Another algorithm in f64, ray by ray: minutes to hours, to measure the others by
     Reference,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum ReferenceShadow {
-    /// A flat layer's closed form
-    Flat,
-    /// Integrated along the ray to the light
-    Followed,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -299,14 +288,9 @@ impl Render {
 
     fn reference(&self, grown: &Grown, lighting: &Lighting, camera: &Camera, size: [usize; 2]) -> Result<Drawn> {
         let start = Instant::now();
-        let shadow = match self.reference_shadow {
-            ReferenceShadow::Flat => GuardShadow::Flat,
-            ReferenceShadow::Followed => GuardShadow::Followed,
-        };
         let settings = reference::Settings {
             samples: self.samples as usize,
             seed: self.ray_seed,
-            shadow,
             ..reference::Settings::new(size)
         };
         let film = grown.reference(lighting, camera, &settings)?;

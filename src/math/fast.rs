@@ -1,14 +1,21 @@
 //! Functions of hot loops: plain arithmetic that gives the same bits everywhere and fits vector lanes.
 
-/// e^x for x ≤ 0, within 3e-7 of the value; 0 below −87.
+/// [`exp`] for x ≤ 0.
+#[inline]
+pub fn exp_negative(x: f32) -> f32 {
+    exp(x.min(0.0))
+}
+
+/// e^x within 3e-7 of the value; 0 below −87, and e^88 above 88.
 ///
 /// Splits x·log₂e into a whole part, which goes into the exponent bits, and a rest in [−½, ½], whose power is a
 /// Taylor polynomial of degree 6.
 #[inline]
-pub fn exp_negative(x: f32) -> f32 {
+pub fn exp(x: f32) -> f32 {
     if x < -87.0 {
         return 0.0;
     }
+    let x = x.min(88.0);
     let y = x * std::f32::consts::LOG2_E;
     // Adding and taking away 1.5·2²³ rounds to the nearest whole number.
     const ROUND: f32 = 12_582_912.0;

@@ -11,6 +11,7 @@ pub mod exr;
 pub mod flat;
 pub mod gpu;
 pub mod march;
+pub mod mean;
 pub mod pelt;
 pub mod picture;
 pub mod pieces;

@@ -2,6 +2,7 @@
 
 use super::bins::TILE;
 use super::flat::{Flat, pixel_ray};
+use super::mean::MeanShadow;
 use super::pelt::{Layer, Lighting, Pelt, sky_depth, slant_depth, terminator};
 use super::resolve::Face;
 use super::view::View;
@@ -59,10 +60,12 @@ impl SkinTile {
 }
 
 /// What skin looks like where a ray from the eye along `direction` meets triangle `t`: diffuse, under all of its hair.
+#[expect(clippy::too_many_arguments, reason = "what is seen, from where, and what lights it")]
 pub fn look(
     pelt: &Pelt<'_>,
     lighting: &Lighting,
     normals: &[Vec3],
+    mean: Option<&MeanShadow<'_>>,
     t: u32,
     barycentric: Vec3,
     direction: Vec3,
@@ -83,10 +86,14 @@ pub fn look(
     let above: f32 =
         if back { 0.0 } else { kinds.iter().flatten().map(|f| Layer::new(f, density, length).above(0.0)).sum() };
     let mut radiance = lighting.ambient * albedo * exp_negative(-sky_depth(above));
-    for light in std::iter::once(&lighting.key).chain(&lighting.fill) {
+    for (i, light) in std::iter::once(&lighting.key).chain(&lighting.fill).enumerate() {
         let cosine = light.to_light.dot(normal);
         if cosine > 0.0 {
-            let shadow = exp_negative(-slant_depth(above, light.to_light, normal, lean));
+            let depth = match mean {
+                Some(mean) if i == 0 && !back => mean.on_skin(t, b),
+                _ => slant_depth(above, light.to_light, normal, lean),
+            };
+            let shadow = exp_negative(-depth);
             radiance += light.irradiance * albedo * (FRAC_1_PI * cosine * shadow * terminator(light.to_light, normal));
         }
     }

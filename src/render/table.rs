@@ -10,6 +10,9 @@ const INTERVALS: usize = 64;
 pub struct Table([f32; INTERVALS + 1]);
 
 impl Table {
+    /// Values that it holds.
+    pub const VALUES: usize = INTERVALS + 1;
+
     /// Of a function.
     pub fn new(f: impl Fn(f32) -> f32) -> Self {
         Self(std::array::from_fn(|i| f(i as f32 / INTERVALS as f32)))

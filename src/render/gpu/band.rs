@@ -117,7 +117,7 @@ impl Band {
                 label: Some("light"),
                 timestamp_writes: timer.compute_writes(0),
             });
-            kernels.strands.dispatch(&mut pass, &groups, scene.point_count.div_ceil(64));
+            kernels.strands.dispatch(&mut pass, &groups, scene.strand_count.div_ceil(64));
         }
         gpu.finish(encoder)?;
         Ok(timer.read_ms(gpu)?.map(|ms| ms[0]))

@@ -10,12 +10,13 @@ macro_rules! source {
 }
 
 /// Files that others import, imported ones first.
-pub const SHARED: [Source; 15] = [
+pub const SHARED: [Source; 16] = [
     source!("shared/hash.wgsl"),
     source!("shared/noise.wgsl"),
     source!("shared/prism.wgsl"),
     source!("shared/scene.wgsl"),
     source!("shared/fur_light.wgsl"),
+    source!("shared/mean_shadow.wgsl"),
     source!("shared/undercoat.wgsl"),
     source!("shared/camera.wgsl"),
     source!("shared/march.wgsl"),

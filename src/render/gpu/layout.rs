@@ -1,5 +1,6 @@
 //! Uniforms as the shaders read them; `tests/shaders.rs` compares names, offsets and sizes with the WGSL.
 
+use crate::fur::groom::fibre::Fibre;
 use crate::math::Vec3;
 use crate::render::pelt::{Layer, Lighting, Pelt};
 use crate::render::picture::Settings;
@@ -19,8 +20,8 @@ pub struct KindUniform {
     pub height_m: f32,
     /// Standard deviation of height over its mean.
     pub variation: f32,
-    /// Fills sixteen bytes.
-    pub unused: f32,
+    /// Height of the tallest where the length field is 1, m.
+    pub top_m: f32,
 }
 
 /// `Lobe` of `shared/scene.wgsl`.
@@ -98,17 +99,20 @@ impl SceneUniform {
         let lobes = Lobes::<f32>::new(&pelt.hair.guard)?;
         let hair = &pelt.hair;
         let scatter = KajiyaKay::<f32>::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent);
-        let guard = pelt.guard.map(|(strands, fibre)| (strands, Layer::new(fibre, 1.0, 1.0)));
+        let guard = pelt.guard;
         let [undercoat_diffuse, undercoat_specular, undercoat_exponent] = scatter.coefficients();
         let (groups, attenuation_per_m) = match settings.blending {
             Blending::Virtual { fragments } => (fragments.clamp(1, 64) as f32, 0.0),
             Blending::Simplified { attenuation_per_m } => (1.0, attenuation_per_m),
         };
-        let kind = |layer: &Layer| KindUniform {
-            area_per_m: layer.area_per_m,
-            height_m: layer.height_m,
-            variation: layer.spread_m / layer.height_m.max(f32::MIN_POSITIVE),
-            unused: 0.0,
+        let kind = |fibre: &Fibre| {
+            let layer = Layer::new(fibre, 1.0, 1.0);
+            KindUniform {
+                area_per_m: layer.area_per_m,
+                height_m: layer.height_m,
+                variation: layer.spread_m / layer.height_m.max(f32::MIN_POSITIVE),
+                top_m: fibre.height_m(),
+            }
         };
         let ramp = |ramp: [Vec3; 3]| ramp.map(|c| c.extend(0.0).to_array());
         let lights = 1 + lighting.fill.len() as u32;
@@ -133,8 +137,8 @@ impl SceneUniform {
             taper: profile.map_or(1.0, |p| p.taper),
             undercoat_ramp: ramp(pelt.undercoat.map_or([Vec3::ONE; 3], |fibre| fibre.profile.ramp)),
             guard_ramp: ramp(profile.map_or([Vec3::ONE; 3], |p| p.ramp)),
-            guard_kind: guard.as_ref().map_or(KindUniform::default(), |(_, layer)| kind(layer)),
-            undercoat_kind: pelt.undercoat.map_or(KindUniform::default(), |f| kind(&Layer::new(f, 1.0, 1.0))),
+            guard_kind: guard.map_or(KindUniform::default(), |(_, fibre)| kind(fibre)),
+            undercoat_kind: pelt.undercoat.map_or(KindUniform::default(), kind),
             tip_transparency: profile.map_or(0.0, |p| p.tip_transparency),
             tip_exponent: profile.map_or(1.0, |p| p.tip_exponent),
             tt_azimuth_scale: lobes.tt_azimuth_scale,

@@ -12,6 +12,7 @@ pub mod plan;
 mod scene;
 
 use super::march::volume::Volume;
+use super::mean::MeanShadow;
 use super::pelt::{Lighting, Pelt};
 use super::picture::{Counts, Picture, Row, Settings, finish, put, shift, subdivisions};
 use super::resolve::Blending;
@@ -54,8 +55,10 @@ pub fn draw(
     let normals = pelt.skin.smooth_normals();
     let subdivisions = subdivisions(pelt, &middle, &settings.resolution);
     let volume = Volume::new(pelt, &normals, lighting.key.to_light, settings.resolution, subdivisions);
+    let mean = MeanShadow::new(pelt, lighting.key.to_light);
+    let (volume, mean) = (volume.as_ref(), mean.as_ref());
     let most_bytes = budget_bytes / 2;
-    let scene = GpuScene::new(gpu, &kernels, pelt, lighting, settings, &normals, volume.as_ref(), &middle, most_bytes)?;
+    let scene = GpuScene::new(gpu, &kernels, pelt, lighting, settings, &normals, volume, mean, &middle, most_bytes)?;
     let filled_ms = scene.fill_ms.as_ref().map_or(0.0, |ms| ms.iter().sum());
     add_row(&mut picture, "shell", Some(ms_since(start) - filled_ms), scene.bytes[0]);
     for (i, name) in ["densities", "shadows"].into_iter().enumerate() {

@@ -8,8 +8,11 @@ use crate::gpu::{Gpu, Timer};
 use crate::math::Vec3;
 use crate::render::march::enter;
 use crate::render::march::volume::Volume;
+use crate::render::mean::MeanShadow;
 use crate::render::pelt::{Lighting, Pelt};
 use crate::render::picture::Settings;
+use crate::render::shell::lattice;
+use crate::render::table::Table;
 use crate::render::view::View;
 
 /// Everything that stays the same from band to band.
@@ -30,8 +33,6 @@ pub(super) struct GpuScene {
     pub face_count: usize,
     /// Pieces of guard hair.
     pub piece_count: usize,
-    /// Points of guard hair.
-    pub point_count: usize,
     /// Strands of guard hair.
     pub strand_count: usize,
     /// Bytes of stored density and shadow.
@@ -50,16 +51,16 @@ struct Stored {
 }
 
 impl Stored {
-    /// Those of `order` that fit into `most_columns`; `splits` gives d. Writes where each begins to `place`.
+    /// Those of `order` that fit into `most_columns`; `columns_of` gives their columns. Writes where each begins to `place`.
     fn new(
         order: impl Iterator<Item = u32>,
         most_columns: usize,
-        splits: impl Fn(u32) -> u32,
+        columns_of: impl Fn(u32) -> u32,
         mut place: impl FnMut(u32, u32),
     ) -> Self {
         let mut stored = Self { starts: Vec::new(), columns: 0 };
         for triangle in order {
-            let columns = 1_usize << (2 * splits(triangle));
+            let columns = columns_of(triangle) as usize;
             if stored.columns + columns > most_columns {
                 continue;
             }
@@ -86,6 +87,7 @@ impl GpuScene {
         settings: &Settings,
         normals: &[Vec3],
         volume: Option<&Volume<'_>>,
+        mean: Option<&MeanShadow<'_>>,
         view: &View,
         most_bytes: usize,
     ) -> Result<Self> {
@@ -102,14 +104,14 @@ impl GpuScene {
         let density = Stored::new(
             seen.iter().chain(&unseen).copied(),
             most_columns,
-            |t| splits(&|v, t| v.subdivisions(t), t),
+            |t| 1 << (2 * splits(&|v, t| v.subdivisions(t), t)),
             |t, at| triangles[t as usize].density_at = at,
         );
         // Only what is seen is asked for its shadow.
         let shadow = Stored::new(
             seen.iter().copied(),
-            usize::MAX / layers,
-            |t| splits(&|v, t| v.shadow_subdivisions(t), t),
+            usize::MAX / (layers + 1),
+            |t| lattice::corners(splits(&|v, t| v.shadow_subdivisions(t), t)),
             |t, at| triangles[t as usize].shadow_at = at,
         );
 
@@ -131,7 +133,8 @@ impl GpuScene {
             uniform.clump_spacing_m = undercoat.clump_spacing_m;
             uniform.clump_strength = undercoat.clump_strength;
         }
-        let tables = volume.map_or(Vec::new(), |v| v.tables().concat());
+        let mut tables = volume.map_or(vec![0.0; 2 * Table::VALUES], |v| v.tables().concat());
+        tables.extend(mean.map_or(Vec::new(), MeanShadow::of_vertices));
         let offsets_m = volume.map_or(&[][..], |v| &v.shell().offsets_m);
         let vertices = VertexItem::of(pelt, normals, offsets_m);
         let (strands, points): (_, &[Vec3]) = match pelt.guard {
@@ -151,7 +154,7 @@ impl GpuScene {
             &[&scene, &triangles_buffer, &vertices_buffer, &tables, &lights, &strands_buffer, &points_buffer],
         );
 
-        let stored_bytes = [density.columns * layers, shadow.columns * layers];
+        let stored_bytes = [density.columns * layers, shadow.columns * (layers + 1)];
         let stored = [gpu.storage("density", stored_bytes[0], 1)?, gpu.storage("shadow", stored_bytes[1], 1)?];
         let timer = Timer::new(gpu, 2);
         let nothing = gpu.storage("no shadow yet", 0, 1)?;
@@ -171,7 +174,7 @@ impl GpuScene {
                 label: Some(["density", "shadow"][i]),
                 timestamp_writes: timer.compute_writes(i as u32),
             });
-            let (kernel, threads) = [(&kernels.density, blocks.columns), (&kernels.shadow, blocks.columns * layers)][i];
+            let (kernel, threads) = [(&kernels.density, blocks.columns), (&kernels.shadow, stored_bytes[1])][i];
             kernel.dispatch(&mut pass, &[&group, &volumes[i], &filled], threads.div_ceil(64));
         }
         gpu.finish(encoder)?;
@@ -186,7 +189,6 @@ impl GpuScene {
             triangle_count: triangles.len(),
             face_count: faces.len(),
             piece_count: strands.len() * (per_strand - 1),
-            point_count: points.len(),
             strand_count: strands.len(),
             stored_bytes,
             bytes: [

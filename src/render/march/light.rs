@@ -5,10 +5,10 @@ use super::volume::{DENSITY_NS, Volume};
 use super::{Journey, Start, Stepping, Steps};
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, Vec3s};
+use crate::render::mean::MeanShadow;
 use crate::render::pelt::{Lighting, Pelt, ramps, sky_depths, slant_depths, terminators, through};
-use crate::render::shell::block::Block;
+use crate::render::shell::lattice::{self, Lattice};
 use crate::render::shell::prism::Place;
-use crate::render::shell::subelement;
 use crate::shade::kajiya_kay::KajiyaKay;
 use crate::shade::light::Directional;
 use crate::shade::{Angles, shadow_power};
@@ -17,16 +17,21 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 /// Optical depth beyond which no light is left.
-const DARK: f32 = 6.0;
+const DARK: f32 = 8.0;
+
+/// The same beside an open border: what is seen there lies between the border, where there is no shadow, and the next
+/// stored depth, which must not be cut short.
+const DARK_AT_BORDERS: f32 = 15.0;
 
 /// Steps towards the light may be long: what they miss is blurred by the shadow's own resolution.
 const TOWARDS_LIGHT: Stepping = Stepping { depth: 1.0, layers: 4.0 };
 
-/// Optical depth of undercoat between each sub-element and the key light, filled prism by prism when first needed.
+/// Optical depth of undercoat, and of guard hair in the mean, between the corners of sub-elements and the key light, filled
+/// prism by prism when first needed.
 #[derive(Debug)]
 pub struct Shadows {
     to_light: Vec3,
-    blocks: Vec<OnceLock<Block>>,
+    lattices: Vec<OnceLock<Lattice>>,
     /// Time spent filling, summed over threads, ns.
     pub(super) spent_ns: AtomicU64,
 }
@@ -34,42 +39,52 @@ pub struct Shadows {
 impl Shadows {
     /// None filled yet.
     pub fn new(to_light: Vec3, triangles: usize) -> Self {
-        let blocks = std::iter::repeat_with(OnceLock::new).take(triangles).collect();
-        Self { to_light, blocks, spent_ns: AtomicU64::new(0) }
+        let lattices = std::iter::repeat_with(OnceLock::new).take(triangles).collect();
+        Self { to_light, lattices, spent_ns: AtomicU64::new(0) }
     }
 
     /// Bytes filled.
     pub fn bytes(&self) -> usize {
-        self.blocks.iter().filter_map(OnceLock::get).map(Block::bytes).sum()
+        self.lattices.iter().filter_map(OnceLock::get).map(Lattice::bytes).sum()
     }
 
-    /// Optical depths towards the light in the sub-elements of a prism of `volume`.
+    /// Optical depths towards the light in a prism of `volume`, whose pelt `mean` is of.
     #[inline]
-    pub fn block(&self, volume: &Volume<'_>, triangle: u32) -> &Block {
-        let cell = &self.blocks[triangle as usize];
-        if let Some(block) = cell.get() {
-            return block;
+    pub fn lattice(&self, volume: &Volume<'_>, mean: Option<&MeanShadow<'_>>, triangle: u32) -> &Lattice {
+        let cell = &self.lattices[triangle as usize];
+        if let Some(lattice) = cell.get() {
+            return lattice;
         }
         cell.get_or_init(|| {
             let (start, density_ns) = (Instant::now(), DENSITY_NS.get());
-            let block = self.fill(volume, triangle);
+            let lattice = self.fill(volume, mean, triangle);
             let other_ns = DENSITY_NS.get() - density_ns;
             self.spent_ns.fetch_add((start.elapsed().as_nanos() as u64).saturating_sub(other_ns), Ordering::Relaxed);
-            block
+            lattice
         })
     }
 
-    fn fill(&self, volume: &Volume<'_>, triangle: u32) -> Block {
-        let prism = volume.shell().prism(triangle);
+    fn fill(&self, volume: &Volume<'_>, mean: Option<&MeanShadow<'_>>, triangle: u32) -> Lattice {
+        let shell = volume.shell();
+        let prism = shell.prism(triangle);
         let (d, layers) = (volume.shadow_subdivisions(triangle), volume.layers());
-        let journey = |i: u32| {
-            let b = subelement::centre(i & ((1 << (2 * d)) - 1), d);
-            let place = Place { b: [b.y, b.z], t: ((i >> (2 * d)) as f32 + 0.5) / layers as f32 };
+        let places: Vec<(Vec3, f32)> =
+            (0..=layers).flat_map(|level| lattice::places(d).map(move |b| (b, level as f32 / layers as f32))).collect();
+        let journey = |&(b, t): &(Vec3, f32)| {
+            let place = Place { b: [b.y, b.z], t };
             let start = Start { at_m: 0.0, triangle, place };
             Journey { origin_m: prism.jacobian(&place).at_m, direction: self.to_light, start, far_m: f32::INFINITY }
         };
-        let journeys: Vec<Journey> = (0..layers << (2 * d)).map(journey).collect();
-        Block::new(d, layers, &volume.depths_along(&journeys, &TOWARDS_LIGHT, DARK))
+        let journeys: Vec<Journey> = places.iter().map(journey).collect();
+        let at_border = (0..3).any(|corner| shell.neighbours.beyond(triangle, corner).is_none());
+        let enough = if at_border { DARK_AT_BORDERS } else { DARK };
+        let mut depths = volume.depths_along(&journeys, &TOWARDS_LIGHT, enough);
+        if let Some(mean) = mean {
+            for (depth, &(b, t)) in depths.iter_mut().zip(&places) {
+                *depth += mean.guard_depth(triangle, b, t);
+            }
+        }
+        Lattice::new(d, &depths)
     }
 }
 
@@ -77,6 +92,8 @@ impl Shadows {
 #[derive(Debug)]
 pub struct UndercoatShader<'a> {
     lighting: &'a Lighting,
+    /// The key light's shadow in the mean.
+    pub mean: Option<&'a MeanShadow<'a>>,
     scatter: KajiyaKay<f32>,
     albedo_share: f32,
     ramp: [Vec3; 3],
@@ -84,10 +101,11 @@ pub struct UndercoatShader<'a> {
 
 impl<'a> UndercoatShader<'a> {
     /// For a pelt's undercoat.
-    pub fn new(pelt: &Pelt<'_>, lighting: &'a Lighting) -> Self {
+    pub fn new(pelt: &Pelt<'_>, lighting: &'a Lighting, mean: Option<&'a MeanShadow<'a>>) -> Self {
         let hair = &pelt.hair;
         Self {
             lighting,
+            mean,
             scatter: KajiyaKay::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent),
             albedo_share: hair.undercoat_diffuse as f32,
             ramp: pelt.undercoat.map_or([Vec3::ONE; 3], |fibre| fibre.profile.ramp),
@@ -107,27 +125,27 @@ impl<'a> UndercoatShader<'a> {
         let albedo = prisms.tint(steps.b).times(ramps(&self.ramp, steps.t));
         let share = albedo * F32s::splat(self.albedo_share);
         let power = Vec3s::new(shadow_power(share.x), shadow_power(share.y), shadow_power(share.z));
-        let [own, above] = volume.above(prisms, steps);
+        let above = volume.above(prisms, steps);
         let normal = prisms.normal(steps.b);
         let mut radiance = share.times(Vec3s::splat(self.lighting.ambient)).times(through(power, sky_depths(above)));
         let spot = Spot { albedo, power, normal, hair: steps.hair, to_eye: steps.direction * F32s::splat(-1.0) };
-        radiance = radiance + self.lit(&spot, &self.lighting.key, above - own, shadow);
+        radiance = radiance + self.lit(&spot, &self.lighting.key, shadow);
         if self.lighting.fill_on_undercoat {
             for light in &self.lighting.fill {
-                radiance = radiance + self.lit(&spot, light, above, F32s::splat(0.0));
+                let depth = slant_depths(above, Vec3s::splat(light.to_light), normal, steps.hair);
+                radiance = radiance + self.lit(&spot, light, depth);
             }
         }
         (albedo, radiance)
     }
 
-    /// What a light gives, shadowed by a layer of hair area `above` and a known depth.
+    /// What a light gives through an optical depth.
     #[inline(always)]
-    fn lit<I: Isa>(&self, spot: &Spot<I>, light: &Directional, above: F32s<I>, depth: F32s<I>) -> Vec3s<I> {
+    fn lit<I: Isa>(&self, spot: &Spot<I>, light: &Directional, depth: F32s<I>) -> Vec3s<I> {
         let to_light = Vec3s::splat(light.to_light);
         let open = terminators(to_light, spot.normal);
         let angles = Angles::of_lanes(spot.hair, to_light, spot.to_eye);
         let (tinted, plain) = self.scatter.map(F32s::splat).scatter(angles);
-        let depth = depth + slant_depths(above, to_light, spot.normal, spot.hair);
         let irradiance = Vec3s::splat(light.irradiance) * (angles.cos_in() * open);
         (spot.albedo * tinted).plus(plain).times(through(spot.power, depth)).times(irradiance)
     }

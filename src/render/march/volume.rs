@@ -86,8 +86,8 @@ pub struct Volume<'a> {
     /// Shadows of the key light.
     pub shadows: Shadows,
     reaching: Table,
-    /// Hair area per skin area above a height: of undercoat, and of both kinds.
-    above: [Table; 2],
+    /// Hair area per skin area above a height, of both kinds.
+    above: Table,
 }
 
 impl<'a> Volume<'a> {
@@ -107,12 +107,10 @@ impl<'a> Volume<'a> {
         let triangles = pelt.skin.triangles.len();
         let own = Layer::new(fibre, 1.0, 1.0);
         let guard = pelt.guard.map(|(_, fibre)| Layer::new(fibre, 1.0, 1.0));
-        let above = |further: Option<Layer>| {
-            Table::new(|t| {
-                let height_m = t * undercoat.height_m;
-                own.above(height_m) + further.map_or(0.0, |layer| layer.above(height_m))
-            })
-        };
+        let above = Table::new(|t| {
+            let height_m = t * undercoat.height_m;
+            own.above(height_m) + guard.map_or(0.0, |layer| layer.above(height_m))
+        });
         let shell = Shell::new(pelt.skin, pelt.fields, undercoat);
         let fields = pelt.fields;
         let vertex = |v: usize| Vertex {
@@ -136,7 +134,7 @@ impl<'a> Volume<'a> {
             density_ns: AtomicU64::new(0),
             shadows: Shadows::new(to_key, triangles),
             reaching: Table::new(|t| undercoat.reaching(t)),
-            above: [above(None), above(guard)],
+            above,
             shell,
         })
     }
@@ -151,10 +149,10 @@ impl<'a> Volume<'a> {
         self.resolution.layers
     }
 
-    /// By height in 64ths of the shell's: the share of hairs that reach it; the hair area above it per skin area, of
-    /// undercoat and of both kinds.
-    pub fn tables(&self) -> [&[f32]; 3] {
-        [self.reaching.values(), self.above[0].values(), self.above[1].values()]
+    /// By height in 64ths of the shell's: the share of hairs that reach it; the hair area of both kinds above it per skin
+    /// area.
+    pub fn tables(&self) -> [&[f32]; 2] {
+        [self.reaching.values(), self.above.values()]
     }
 
     /// The corners of a triangle.
@@ -179,11 +177,10 @@ impl<'a> Volume<'a> {
         [&self.density_ns, &self.shadows.spent_ns].map(|ns| ns.load(Ordering::Relaxed) as f64 * 1e-6)
     }
 
-    /// Hair area above heights per skin area: of undercoat, and of both kinds.
+    /// Hair area of both kinds above heights per skin area.
     #[inline(always)]
-    pub fn above<I: Isa>(&self, prisms: &Prisms, steps: &Steps<I>) -> [F32s<I>; 2] {
-        let factor = prisms.density(steps.b) * prisms.length(steps.b);
-        [factor * self.above[0].at_lanes(steps.t), factor * self.above[1].at_lanes(steps.t)]
+    pub fn above<I: Isa>(&self, prisms: &Prisms, steps: &Steps<I>) -> F32s<I> {
+        prisms.density(steps.b) * prisms.length(steps.b) * self.above.at_lanes(steps.t)
     }
 
     /// Density over its mean in the sub-elements of a prism.

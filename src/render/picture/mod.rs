@@ -8,6 +8,7 @@ mod undercoat;
 
 use super::march::Stepping;
 use super::march::volume::{Resolution, Volume};
+use super::mean::MeanShadow;
 use super::pelt::{Lighting, Pelt};
 use super::resolve::Blending;
 use super::view::View;
@@ -116,10 +117,13 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
     let middle = View::new(camera, pelt.skin.origin_m, settings.size, Vec2::ZERO)?;
     let subdivisions = subdivisions(pelt, &middle, &settings.resolution);
     let volume = Volume::new(pelt, &normals, lighting.key.to_light, settings.resolution, subdivisions);
-    row(&mut picture, "shell", start, volume.as_ref().map_or(0, |v| v.shell().bytes()));
+    let mean = MeanShadow::new(pelt, lighting.key.to_light);
+    let bytes = volume.as_ref().map_or(0, |v| v.shell().bytes()) + mean.as_ref().map_or(0, MeanShadow::bytes);
+    row(&mut picture, "shell", start, bytes);
     for pass in 0..passes {
         let view = View::new(camera, pelt.skin.origin_m, settings.size, shift(pass, passes))?;
-        let film = Pass::new(pelt, lighting, &normals, volume.as_ref(), view, settings)?.run(&mut picture);
+        let film =
+            Pass::new(pelt, lighting, &normals, volume.as_ref(), mean.as_ref(), view, settings)?.run(&mut picture);
         if pass == 0 { picture.film = film } else { add(&mut picture.film, &film) }
     }
     finish(&mut picture.film, 1.0 / passes as f32);

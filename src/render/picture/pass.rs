@@ -8,10 +8,11 @@ use crate::data::strands::Strands;
 use crate::error::Result;
 use crate::math::Vec3;
 use crate::render::bins::{Bins, Grid, Reach, TILE};
-use crate::render::flat;
+use crate::render::flat::{self, Flat};
 use crate::render::march::enter::Entrances;
 use crate::render::march::light::UndercoatShader;
 use crate::render::march::volume::Volume;
+use crate::render::mean::MeanShadow;
 use crate::render::pelt::{Lighting, Pelt};
 use crate::render::skin::SkinTile;
 use crate::render::strands::shade::GuardShader;
@@ -26,10 +27,13 @@ pub(super) struct Pass<'a> {
     pub(super) pelt: &'a Pelt<'a>,
     pub(super) lighting: &'a Lighting,
     pub(super) normals: &'a [Vec3],
+    pub(super) mean: Option<&'a MeanShadow<'a>>,
     pub(super) view: View,
     pub(super) settings: &'a Settings,
     /// The skin's vertices in camera axes.
     pub(super) skin_camera_m: Vec<Vec3>,
+    /// Triangles seen from their bare side.
+    pub(super) bare: Vec<bool>,
     pub(super) guard: Option<(&'a Strands, GuardShader<'a>)>,
     pub(super) undercoat: Option<(&'a Volume<'a>, UndercoatShader<'a>)>,
     /// Opacity of a guard hair along it.
@@ -53,19 +57,37 @@ impl<'a> Pass<'a> {
         lighting: &'a Lighting,
         normals: &'a [Vec3],
         volume: Option<&'a Volume<'a>>,
+        mean: Option<&'a MeanShadow<'a>>,
         view: View,
         settings: &'a Settings,
     ) -> Result<Self> {
         let guard = match pelt.guard {
-            Some((strands, _)) => Some((strands, GuardShader::new(*pelt, strands, lighting, normals, view.eye_m)?)),
+            Some((strands, _)) => {
+                Some((strands, GuardShader::new(*pelt, strands, lighting, normals, mean, view.eye_m)?))
+            }
             None => None,
         };
-        let skin_camera_m = pelt.skin.positions_m.iter().map(|&p| view.camera_from_world(p)).collect();
-        let undercoat = volume.map(|volume| (volume, UndercoatShader::new(pelt, lighting)));
+        let skin_camera_m: Vec<Vec3> = pelt.skin.positions_m.iter().map(|&p| view.camera_from_world(p)).collect();
+        let corners = |triangle: &[u32; 3]| triangle.map(|v| skin_camera_m[v as usize]);
+        let bare = pelt.skin.triangles.iter().map(|triangle| !Flat::new(corners(triangle)).faces_eye()).collect();
+        let undercoat = volume.map(|volume| (volume, UndercoatShader::new(pelt, lighting, mean)));
         let opacity = Table::new(|s| pelt.guard.map_or(1.0, |(strands, _)| strands.profile.opacity_at(s)));
         let pieces = pelt.guard.map_or(1, |(strands, _)| strands.points_per_strand - 1);
         let per_piece = 1.0 / pieces as f32;
-        Ok(Self { pelt, lighting, normals, view, settings, skin_camera_m, guard, undercoat, opacity, per_piece })
+        Ok(Self {
+            pelt,
+            lighting,
+            normals,
+            mean,
+            view,
+            settings,
+            skin_camera_m,
+            bare,
+            guard,
+            undercoat,
+            opacity,
+            per_piece,
+        })
     }
 
     pub(super) fn run(&self, picture: &mut Picture) -> Film {

@@ -7,6 +7,7 @@ use super::pass::{Band, Pass};
 use super::undercoat::{Look, PixelJourney};
 use crate::data::film::Layers;
 use crate::data::strands::Strands;
+use crate::math::fast::exp;
 use crate::math::lanes::{self, Isa};
 use crate::math::{Vec2, Vec3};
 use crate::render::bins::TILE;
@@ -169,16 +170,28 @@ impl Pass<'_> {
         }
     }
 
-    /// Whether a hair that lies behind the skin of a pixel's middle lies before the skin of its own place: on slanting
-    /// skin, half of the roots would else be lost.
+    /// Whether a hair lies before the skin. On slanting skin, half of the roots lie behind the skin of the pixel's middle:
+    /// they count where they lie before the skin of their own place. Seen from its bare side, skin hides what lies behind
+    /// either.
+    #[inline(always)]
+    fn before_skin(&self, a: &Knot, b: &Knot, share: &Share, z_m: f32, skin_z_m: f32, triangle: u32) -> bool {
+        let before_middle = z_m < skin_z_m;
+        // Planes are asked for only where they decide.
+        if triangle == NONE || before_middle != self.bare[triangle as usize] {
+            return before_middle;
+        }
+        self.before_plane(a, b, share, z_m, triangle)
+    }
+
+    /// Whether a hair lies before the plane of a triangle, at its own place within the pixel.
     #[inline(never)]
-    fn before_skin(&self, a: &Knot, b: &Knot, share: &Share, z_m: f32, triangle: u32) -> bool {
+    fn before_plane(&self, a: &Knot, b: &Knot, share: &Share, z_m: f32, triangle: u32) -> bool {
         let at = |from: f32, to: f32, pixel: i32| {
             (from + share.linear * (to - from)).clamp(pixel as f32, (pixel + 1) as f32)
         };
         let pixel = Vec2::new(at(a.x, b.x, share.pixel[0]), at(a.y, b.y, share.pixel[1]));
         let ray = ((pixel - self.view.centre_px) / self.view.focal_px).extend(1.0);
-        triangle != NONE && z_m < Flat::new(self.corners(triangle)).plane_depth(ray)
+        z_m < Flat::new(self.corners(triangle)).plane_depth(ray)
     }
 
     fn skin_face(&self, x: usize, y: usize, triangle: u32) -> Option<Face> {
@@ -188,13 +201,13 @@ impl Pass<'_> {
         let meeting = Flat::new(self.corners(triangle)).meet(pixel_ray(&self.view, x, y))?;
         let direction = self.view.direction(Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
         let (b, z_m) = (meeting.barycentric, meeting.z_m);
-        Some(skin::look(self.pelt, self.lighting, self.normals, triangle, b, direction, z_m))
+        Some(skin::look(self.pelt, self.lighting, self.normals, self.mean, triangle, b, direction, z_m))
     }
 
     fn hair_face(&self, strands: &Strands, band: &Band, fragment: &Fragment) -> Face {
         let at = fragment.knot as usize;
         let (a, b) = (&band.looks[at], &band.looks[at + 1]);
-        let radiance = a.radiance.lerp(b.radiance, fragment.along);
+        let radiance = a.log_radiance.lerp(b.log_radiance, fragment.along).map(exp);
         if self.settings.layers == Layers::Light {
             return Face { radiance, ..Face::default() };
         }
@@ -298,7 +311,7 @@ impl Brush<'_, '_> {
         let (place, skin) = (self.place, self.place.skin);
         let at = place.at(share.pixel[0] as usize, share.pixel[1] as usize);
         if z_m <= self.guard.limit_m(at)
-            && (z_m < skin.z_m[at] || self.pass.before_skin(stroke.a, stroke.b, share, z_m, skin.triangle[at]))
+            && self.pass.before_skin(stroke.a, stroke.b, share, z_m, skin.z_m[at], skin.triangle[at])
         {
             let Stroke { piece, id, .. } = *stroke;
             self.guard.push(at, Fragment::new(z_m, id, [share.coverage, opacity], piece, share.along));

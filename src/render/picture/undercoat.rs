@@ -8,7 +8,7 @@ use crate::render::march::prisms::Prisms;
 use crate::render::march::volume::Volume;
 use crate::render::march::{Journey, Stepping, Steps, Traveller, march};
 use crate::render::resolve::{OPAQUE, Stretch};
-use crate::render::shell::block::Blocks;
+use crate::render::shell::lattice::Lattices;
 use crate::render::strands::Fragment;
 
 /// How much deeper a ray's last steps may be than its first; as in `render/march.wgsl`.
@@ -48,7 +48,7 @@ impl Work for Look<'_> {
         let Some(&first) = self.journeys.first() else { return 0 };
         let (volume, stepping) = (self.volume, self.stepping);
         let mut sight = Sight {
-            shadows: Blocks::new(volume.layers()),
+            shadows: Lattices::new(volume.layers()),
             fragments: self.fragments.clamp(1, 64) as f32,
             next: 0,
             current: [first; MOST],
@@ -69,7 +69,7 @@ struct Sight<'a> {
     look: Look<'a>,
     next: usize,
     current: [PixelJourney; MOST],
-    shadows: Blocks<'a>,
+    shadows: Lattices<'a>,
     fragments: f32,
     through: Row,
     /// Transmittance of the guard hair passed so far.
@@ -155,13 +155,13 @@ impl<I: Isa> Traveller<I> for Sight<'_> {
     #[inline(always)]
     fn enter(&mut self, lane: usize, triangle: u32) {
         let volume = self.look.volume;
-        self.shadows.set(lane, volume.shadows.block(volume, triangle));
+        self.shadows.set(lane, volume.shadows.lattice(volume, self.look.shader.mean, triangle));
     }
 
     #[inline(always)]
     fn visit(&mut self, prisms: &Prisms, steps: &Steps<I>, on: Mask<I>) -> Mask<I> {
         let one = F32s::splat(1.0);
-        let shadow = self.shadows.between_layers(steps.b, steps.t, on);
+        let shadow = self.shadows.at(steps.b, steps.t, on);
         let (albedo, radiance) = self.look.shader.look(self.look.volume, prisms, steps, shadow);
         let through = F32s::of(&self.through);
         let left = through * on.select((-steps.depth).exp_negative(), one);

@@ -1,6 +1,7 @@
 //! Guard hair as round cones in f64: every hair that a ray enters, once each.
 
 use super::bvh::{Bounds, Bvh, Ray};
+use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;
 use crate::math::DVec3;
 use rayon::prelude::*;
@@ -24,13 +25,14 @@ pub struct Crossing {
 #[derive(Debug)]
 pub struct Guard<'a> {
     strands: &'a Strands,
+    skin: &'a Mesh,
     bvh: Bvh,
     widest_m: f64,
 }
 
 impl<'a> Guard<'a> {
     /// Builds the hierarchy.
-    pub fn new(strands: &'a Strands) -> Self {
+    pub fn new(strands: &'a Strands, skin: &'a Mesh) -> Self {
         let pieces = strands.points_per_strand - 1;
         let bounds: Vec<Bounds> = (0..strands.len() * pieces)
             .into_par_iter()
@@ -41,7 +43,7 @@ impl<'a> Guard<'a> {
             })
             .collect();
         let widest_m = 2.0 * f64::from(strands.root_radius_m.iter().copied().fold(0.0, f32::max));
-        Self { strands, bvh: Bvh::new(&bounds), widest_m }
+        Self { strands, skin, bvh: Bvh::new(&bounds), widest_m }
     }
 
     /// Where, from `near_m` on, a ray first comes close to hair.
@@ -97,6 +99,13 @@ impl<'a> Guard<'a> {
         1.0 - share * f64::from(profile.tip_transparency)
     }
 
+    /// Out of the skin at a hair's root, of no particular length.
+    fn up(&self, strand: u32) -> DVec3 {
+        let [a, b, c] =
+            self.skin.corners_m(self.strands.roots[strand as usize].triangle as usize).map(|p| p.as_dvec3());
+        (b - a).cross(c - a)
+    }
+
     fn cross(&self, ray: &Ray, strand: u32, piece: u32) -> Option<Crossing> {
         let points = self.strands.points_of_m(strand as usize);
         let last = (points.len() - 1) as f64;
@@ -106,6 +115,10 @@ impl<'a> Guard<'a> {
         let end = |i: u32| points[i as usize].as_dvec3();
         let (from, to) = (end(piece) - ray.origin_m, end(piece + 1) - ray.origin_m);
         let [enter_m, leave_m, along] = round_cone(from, to, [radius_m(piece), radius_m(piece + 1)], ray.direction)?;
+        // The root's round end lies under the skin: none is seen through the bare side of a pelt.
+        if piece == 0 && (ray.direction * enter_m - from).dot(self.up(strand)) < 0.0 {
+            return None;
+        }
         Some(Crossing { enter_m, leave_m, strand, knot: f64::from(piece) + along, piece })
     }
 }

@@ -44,18 +44,6 @@ pub struct Settings {
     pub seed: u64,
     /// Pattern of the undercoat's density.
     pub pattern: Option<Pattern>,
-    /// How guard hair shadows.
-    pub shadow: GuardShadow,
-}
-
-/// How guard hair shadows itself, undercoat and skin from the key light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GuardShadow {
-    /// As the renderer has it: a flat layer's closed form.
-    Flat,
-    /// Hair in the mean, followed through the shell to its top or border, and undercoat with it: tells what the closed form
-    /// gets wrong.
-    Followed,
 }
 
 /// Most rays per pixel.
@@ -73,7 +61,6 @@ impl Settings {
             lightness_error: LIGHTNESS_ERROR,
             seed: 0,
             pattern: Some(Pattern::default()),
-            shadow: GuardShadow::Flat,
         }
     }
 }
@@ -90,12 +77,12 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
     View::new(camera, origin_m, settings.size, Vec2::ZERO)?;
     let normals = pelt.skin.smooth_normals();
     let skin = Skin::new(pelt.skin);
-    let guard = pelt.guard.map(|(strands, _)| Guard::new(strands));
+    let guard = pelt.guard.map(|(strands, _)| Guard::new(strands, pelt.skin));
     let medium = Medium::new(pelt, &normals, settings.pattern);
     let scene = Reference {
         pelt,
         tracer: Tracer { skin: &skin, guard: guard.as_ref(), medium: medium.as_ref() },
-        shader: Shader::new(pelt, lighting, medium.as_ref(), &skin, &normals, settings.shadow)?,
+        shader: Shader::new(pelt, lighting, medium.as_ref(), &skin, &normals)?,
         lens: Lens::new(camera, origin_m, settings.size),
         settings,
     };

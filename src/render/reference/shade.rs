@@ -1,7 +1,6 @@
 //! What a point of hair or skin sends to the eye, in f64: the formulas of `crate::shade` and `crate::render::pelt`, with the
 //! key light's optical depth integrated anew for every point.
 
-use super::GuardShadow;
 use super::bvh::Ray;
 use super::guard::{Crossing, Guard};
 use super::medium::{Counted, Medium};
@@ -42,14 +41,6 @@ struct Site {
     key_depth: f64,
 }
 
-/// What is shaded.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Of {
-    Undercoat,
-    /// Guard hair or skin.
-    Other,
-}
-
 /// Shades what rays find.
 pub struct Shader<'a> {
     pelt: &'a Pelt<'a>,
@@ -59,7 +50,6 @@ pub struct Shader<'a> {
     lobes: Lobes<f64>,
     undercoat: KajiyaKay<f64>,
     normals: &'a [Vec3],
-    shadow: GuardShadow,
 }
 
 impl<'a> Shader<'a> {
@@ -73,7 +63,6 @@ impl<'a> Shader<'a> {
         medium: Option<&'a Medium<'a>>,
         skin: &'a Skin,
         normals: &'a [Vec3],
-        shadow: GuardShadow,
     ) -> Result<Self> {
         let hair = &pelt.hair;
         Ok(Self {
@@ -84,7 +73,6 @@ impl<'a> Shader<'a> {
             lobes: Lobes::new(&hair.guard)?,
             undercoat: KajiyaKay::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent),
             normals,
-            shadow,
         })
     }
 
@@ -96,7 +84,7 @@ impl<'a> Shader<'a> {
         let albedo = medium.vector(&fields.tint, place) * ramp.as_dvec3();
         let hair = medium.hair(place);
         let height_m = place.t * self.height_m(place);
-        let site = self.site(place, height_m, hair, Of::Undercoat);
+        let site = self.site(place, height_m, hair);
         let diffuse = albedo * self.pelt.hair.undercoat_diffuse;
         let scattered = |angles: Angles<f64>| {
             let (tinted, plain) = self.undercoat.scatter(angles);
@@ -128,7 +116,7 @@ impl<'a> Shader<'a> {
         let height_m = (at - point(0)).dot(normal) / lean.dot(normal).max(0.05);
         // A hair is shadowed as the column over its root is at the same height.
         let column = Place { t: (height_m / self.height_m(&foot)).max(0.0), ..foot };
-        let site = self.site(&column, height_m, lean, Of::Other);
+        let site = self.site(&column, height_m, lean);
         let albedo = strands.tint[strand].as_dvec3() * strands.profile.ramp_at(guard.s(crossing) as f32).as_dvec3();
         let p = &self.pelt.hair.guard;
         let share = albedo * (p.tt.albedo + p.trt.albedo + p.diffuse);
@@ -149,11 +137,7 @@ impl<'a> Shader<'a> {
         let lean = self.vector(&fields.lean, place).normalize_or(normal);
         let albedo = self.vector(&fields.tint, place) * self.pelt.skin_factor.as_dvec3();
         // The back of a pelt is bare.
-        let site = if back {
-            Site { normal, lean, above: 0.0, key_depth: 0.0 }
-        } else {
-            self.site(place, 0.0, lean, Of::Other)
-        };
+        let site = if back { Site { normal, lean, above: 0.0, key_depth: 0.0 } } else { self.site(place, 0.0, lean) };
         let mut radiance = self.lighting.ambient.as_dvec3() * albedo * libm::exp(-f64::from(sky_depth(site.above)));
         for (i, light) in std::iter::once(&self.lighting.key).chain(&self.lighting.fill).enumerate() {
             let cosine = light.to_light.as_dvec3().dot(normal);
@@ -202,7 +186,7 @@ impl<'a> Shader<'a> {
     }
 
     /// What stands around hair at a place, `height_m` above the skin.
-    fn site(&self, place: &Place, height_m: f64, lean: DVec3, of: Of) -> Site {
+    fn site(&self, place: &Place, height_m: f64, lean: DVec3) -> Site {
         let fields = self.pelt.fields;
         let (density, length) = (self.scalar(&fields.density, place) as f32, self.scalar(&fields.length, place) as f32);
         let above = |fibre| Layer::new(fibre, density, length).above(height_m as f32);
@@ -210,23 +194,18 @@ impl<'a> Shader<'a> {
         let guard = self.pelt.guard.map_or(0.0, |(_, fibre)| above(fibre));
         let normal = self.normal(place);
         let to_light = self.lighting.key.to_light;
-        let flat = |above: f32| f64::from(slant_depth(above, to_light, normal.as_vec3(), lean.as_vec3()));
-        let key_depth = match (self.shadow, of) {
-            _ if terminator(to_light, normal.as_vec3()) <= 0.0 => 0.0,
-            (GuardShadow::Followed, _) => self.key_depth(place, Counted::Both),
-            (GuardShadow::Flat, Of::Undercoat) => self.key_depth(place, Counted::Undercoat) + flat(guard),
-            (GuardShadow::Flat, Of::Other) => flat(own + guard),
-        };
+        let lit = terminator(to_light, normal.as_vec3()) > 0.0;
+        let key_depth = if lit { self.key_depth(place) } else { 0.0 };
         Site { normal, lean, above: own + guard, key_depth }
     }
 
     /// Optical depth of hair between a place and the key light, up to the first skin.
-    fn key_depth(&self, place: &Place, counted: Counted) -> f64 {
+    fn key_depth(&self, place: &Place) -> f64 {
         let Some(medium) = self.medium else { return 0.0 };
         let from_m = 1e-7 * self.height_m(place);
         let ray = Ray::new(medium.slabs.position_m(place), self.lighting.key.to_light.as_dvec3().normalize());
         let to_m = self.skin.meet(&ray, from_m).map_or(f64::INFINITY, |(at_m, _)| at_m);
-        medium.depth_along(&ray, from_m, to_m, counted, DARK)
+        medium.depth_along(&ray, from_m, to_m, Counted::Both, DARK)
     }
 
     /// Height of the shell at a place, m along the lean.

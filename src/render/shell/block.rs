@@ -4,7 +4,7 @@ use super::subelement;
 use crate::math::lanes::{F32s, Isa, MOST, Mask, Row, U32s, Vec3s};
 
 /// The largest value that a byte can hold; 1 is byte 64 exactly.
-const LARGEST: f32 = (255.0 / 64.0) * (255.0 / 64.0);
+pub(super) const LARGEST: f32 = (255.0 / 64.0) * (255.0 / 64.0);
 
 /// Values by sub-element and layer: i·layers + i_l. Equation (3) has whole layers one after the other, but a ray goes from
 /// layer to layer over neighbouring sub-elements: a column of 16 layers is a quarter of a cache line.
@@ -65,17 +65,6 @@ impl<'a> Blocks<'a> {
         self.fetch(subelement::indices(b, F32s::of(&self.n)), layer, on)
     }
 
-    /// The same, linear between the middles of layers.
-    #[inline(always)]
-    pub fn between_layers<I: Isa>(&self, b: Vec3s<I>, t: F32s<I>, on: Mask<I>) -> F32s<I> {
-        let last = self.layers - 1.0;
-        let at = (t * self.layers - 0.5).within(0.0, last);
-        let low = at.floor();
-        let i = subelement::indices(b, F32s::of(&self.n));
-        let (from, to) = (self.fetch(i, low, on), self.fetch(i, (low + 1.0).min(F32s::splat(last)), on));
-        from + (at - low) * (to - from)
-    }
-
     #[inline(always)]
     fn fetch<I: Isa>(&self, i: U32s<I>, layer: F32s<I>, on: Mask<I>) -> F32s<I> {
         let at = i.times(F32s::splat(self.layers).to_whole()).plus(layer.to_whole()).row();
@@ -88,7 +77,7 @@ impl<'a> Blocks<'a> {
 }
 
 /// Square-root coding: small values keep their relative precision.
-fn code(value: f32) -> u8 {
+pub(super) fn code(value: f32) -> u8 {
     ((value / LARGEST).clamp(0.0, 1.0).sqrt() * 255.0 + 0.5) as u8
 }
 

@@ -1,6 +1,7 @@
 //! The prismatic shell: every triangle extruded along its hair (Andersen et al. 2016 §3.2, `docs/steps/march.md`).
 
 pub mod block;
+pub mod lattice;
 pub mod neighbours;
 pub mod prism;
 pub mod subelement;

@@ -13,8 +13,9 @@ use crate::math::Vec3;
 /// What a guard hair sends towards the eye, at one of its points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Look {
-    /// Radiance of the opaque hair, linear RGB.
-    pub radiance: Vec3,
+    /// Logarithm of the opaque hair's radiance, linear RGB: shadow, and radiance with it, goes exponentially from point to
+    /// point.
+    pub log_radiance: Vec3,
     /// Diffuse colour.
     pub albedo: Vec3,
 }

@@ -4,7 +4,8 @@ use super::Look;
 use crate::data::strands::Strands;
 use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, Row, Vec3Row, Vec3s};
-use crate::render::pelt::{Layer, Lighting, Pelt, ramps, sky_depths, slant_depths, terminators, through};
+use crate::render::mean::{self, MeanShadow};
+use crate::render::pelt::{Layer, Lighting, Pelt, ramps, sky_depths, slant_depths, terminator, terminators, through};
 use crate::render::table::Table;
 use crate::shade::lobes::Lobes;
 use crate::shade::{Angles, shadow_power};
@@ -16,6 +17,7 @@ pub struct GuardShader<'a> {
     lighting: &'a Lighting,
     lobes: Lobes<f32>,
     normals: &'a [Vec3],
+    mean: Option<&'a MeanShadow<'a>>,
     eye_m: Vec3,
     albedo_share: f32,
     /// Height at which no hair is left where the length field is 1, m.
@@ -34,6 +36,7 @@ impl<'a> GuardShader<'a> {
         strands: &'a Strands,
         lighting: &'a Lighting,
         normals: &'a [Vec3],
+        mean: Option<&'a MeanShadow<'a>>,
         eye_m: Vec3,
     ) -> crate::Result<Self> {
         let lobes = Lobes::new(&pelt.hair.guard)?;
@@ -43,7 +46,7 @@ impl<'a> GuardShader<'a> {
         let layers = [pelt.guard.map(|(_, fibre)| layer(fibre)), pelt.undercoat.map(layer)];
         let top_m = layers.iter().flatten().map(|l| l.height_m + 5.0 * l.spread_m).fold(f32::MIN_POSITIVE, f32::max);
         let above = Table::new(|x| layers.iter().flatten().map(|layer| layer.above(x * top_m)).sum());
-        Ok(Self { pelt, strands, lighting, lobes, normals, eye_m, albedo_share, top_m, above })
+        Ok(Self { pelt, strands, lighting, lobes, normals, mean, eye_m, albedo_share, top_m, above })
     }
 
     /// Appends the looks of some strands' points, root first.
@@ -67,6 +70,9 @@ impl<'a> GuardShader<'a> {
         let rise = lean.dot(normal).max(0.05);
         let share_of_top = 1.0 / (rise * self.top_m * length).max(f32::MIN_POSITIVE);
 
+        // Hair is shadowed as the column over its own root is at its height.
+        let lit = terminator(self.lighting.key.to_light, normal) > 0.0;
+        let column = self.mean.filter(|_| lit).map(|mean| (mean, mean.column(root.triangle, b)));
         let points = strands.points_of_m(strand);
         let last = points.len() - 1;
         for first in (0..points.len()).step_by(I::LANES) {
@@ -79,6 +85,7 @@ impl<'a> GuardShader<'a> {
                 s.0[lane] = i as f32 / last as f32;
             }
             let at_m = Vec3s::<I>::of(&at_m);
+            let height_m = (at_m - Vec3s::splat(points[0])).dot(Vec3s::splat(normal));
             let normal = Vec3s::splat(normal);
             let spot = Spot {
                 albedo: self.ramp(F32s::of(&s)).times(Vec3s::splat(strands.tint[strand])),
@@ -86,14 +93,19 @@ impl<'a> GuardShader<'a> {
                 to_eye: (Vec3s::splat(self.eye_m) - at_m).normalized_or(normal),
                 normal,
                 lean: Vec3s::splat(lean),
-                above: {
-                    let height_m = (at_m - Vec3s::splat(points[0])).dot(normal);
-                    self.above.at_lanes(height_m * share_of_top) * factor
-                },
+                above: self.above.at_lanes(height_m * share_of_top) * factor,
+                key_depth: column.map_or(F32s::splat(0.0), |(mean, column)| {
+                    let share = (height_m * mean.share(1.0 / rise, length)).row();
+                    F32s::each(|lane| mean::at(&column, share.0[lane]))
+                }),
             };
-            let (radiance, albedo) = (self.radiance(&spot).rows(), spot.albedo.rows());
-            out.extend((0..count).map(|lane| Look { radiance: radiance.lane(lane), albedo: albedo.lane(lane) }));
+            let Vec3s { x, y, z } = self.radiance(&spot);
+            let (log_radiance, albedo) = (Vec3s::new(log(x), log(y), log(z)).rows(), spot.albedo.rows());
+            let look = |lane| Look { log_radiance: log_radiance.lane(lane), albedo: albedo.lane(lane) };
+            out.extend((0..count).map(look));
         }
+        let begin = out.len() - points.len();
+        settle(&mut out[begin..]);
     }
 
     #[inline(always)]
@@ -103,13 +115,17 @@ impl<'a> GuardShader<'a> {
         let ambient = share.times(Vec3s::splat(self.lighting.ambient));
         let mut sum = ambient.times(through(power, sky_depths(spot.above)));
         let lobes = self.lobes.map(F32s::splat);
-        for light in std::iter::once(&self.lighting.key).chain(&self.lighting.fill) {
+        for (i, light) in std::iter::once(&self.lighting.key).chain(&self.lighting.fill).enumerate() {
             let to_light = Vec3s::splat(light.to_light);
             let angles = Angles::of_lanes(spot.hair, to_light, spot.to_eye);
             let s = lobes.scatter(angles);
             let twice = spot.albedo.times(spot.albedo) * s.twice;
             let scattered = (spot.albedo * s.once + twice).plus(s.plain);
-            let shadow = through(power, slant_depths(spot.above, to_light, spot.normal, spot.lean));
+            let depth = match i {
+                0 => spot.key_depth,
+                _ => slant_depths(spot.above, to_light, spot.normal, spot.lean),
+            };
+            let shadow = through(power, depth);
             let open = terminators(to_light, spot.normal);
             let irradiance = Vec3s::splat(light.irradiance) * (angles.cos_in() * open);
             sum = sum + scattered.times(shadow).times(irradiance);
@@ -122,6 +138,33 @@ impl<'a> GuardShader<'a> {
     fn ramp<I: Isa>(&self, s: F32s<I>) -> Vec3s<I> {
         ramps(&self.strands.profile.ramp, s)
     }
+}
+
+/// A point that no light reaches must not brighten its neighbours.
+const MOST_BEND: Vec3 = Vec3::splat(0.25);
+
+/// Moves points so that straight lines between them keep to the curve in the mean rather than at its points: they stray from
+/// it by a twelfth of its second difference.
+fn settle(looks: &mut [Look]) {
+    let [first, second, third, ..] = looks else { return };
+    let bend = |a: Vec3, b: Vec3, c: Vec3| ((a - b - b + c) / 12.0).clamp(-MOST_BEND, MOST_BEND);
+    let mut last_bend = bend(first.log_radiance, second.log_radiance, third.log_radiance);
+    let mut before = first.log_radiance;
+    first.log_radiance -= last_bend;
+    for i in 1..looks.len() {
+        let here = looks[i].log_radiance;
+        if let Some(next) = looks.get(i + 1) {
+            last_bend = bend(before, here, next.log_radiance);
+        }
+        looks[i].log_radiance -= last_bend;
+        before = here;
+    }
+}
+
+/// Natural logarithm; of nothing, one whose power is nothing again.
+#[inline(always)]
+fn log<I: Isa>(radiance: F32s<I>) -> F32s<I> {
+    radiance.max(F32s::splat(f32::MIN_POSITIVE)).log2() * std::f32::consts::LN_2
 }
 
 /// Shades some strands.
@@ -151,4 +194,6 @@ struct Spot<I: Isa> {
     lean: Vec3s<I>,
     /// Hair area above per skin area.
     above: F32s<I>,
+    /// Optical depth towards the key light.
+    key_depth: F32s<I>,
 }

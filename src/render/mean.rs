@@ -1,0 +1,259 @@
+//! The key light's shadow in hair as dense as it is in the mean: optical depth from every vertex of the skin, at heights up
+//! to the tips, through the shell to its top or an open border (`docs/steps/shade.md`).
+
+use super::pelt::Pelt;
+use super::shell::Shell;
+use super::shell::prism::Place;
+use crate::fur::groom::fibre::{Fibre, LENGTH_SPREAD};
+use crate::fur::undercoat::Undercoat;
+use crate::math::Vec3;
+use rayon::prelude::*;
+use std::sync::OnceLock;
+
+/// Intervals of height up to the tips.
+const LAYERS: usize = 24;
+
+/// Optical depth beyond which no light is left.
+const DARK: f32 = 15.0;
+
+/// No march takes more steps.
+const MOST_STEPS: usize = 512;
+
+/// Optical depths of undercoat and guard hair towards the key light at heights from the skin to the tips.
+pub type Depths = [[f32; 2]; LAYERS + 1];
+
+/// Optical depths of both kinds together at the same heights.
+pub type Column = [f32; LAYERS + 1];
+
+/// A kind of hair in the mean.
+#[derive(Clone, Debug)]
+struct Kind {
+    /// Slopes and their spread.
+    slopes: Undercoat,
+    /// Hair width × length along the hair per skin area and height, 1/m, at heights up to the tips.
+    width_per_m: [f32; LAYERS * 4 + 1],
+}
+
+impl Kind {
+    fn new(fibre: &Fibre, shell_m: f32, tips: f32) -> Self {
+        let slopes = Undercoat::new(fibre, None);
+        let variation = fibre.shape.length_variation;
+        let mean = slopes.height_m / shell_m / (1.0 + LENGTH_SPREAD * variation);
+        let width = |t: f32| {
+            // Over lengths: normal, those beyond two deviations set there.
+            const STEPS: usize = 32;
+            let step = 2.0 * LENGTH_SPREAD / STEPS as f32;
+            let of = |z: f32| {
+                let s = t / (mean * (1.0 + z * variation));
+                if s > 1.0 {
+                    return 0.0;
+                }
+                2.0 * fibre.radius_m * fibre.profile.radius_factor(s) * fibre.profile.opacity_at(s)
+            };
+            let beyond = 0.5 * libm::erfcf(LENGTH_SPREAD * std::f32::consts::FRAC_1_SQRT_2);
+            (0..STEPS).fold(beyond * (of(-LENGTH_SPREAD) + of(LENGTH_SPREAD)), |sum, i| {
+                let z = -LENGTH_SPREAD + (i as f32 + 0.5) * step;
+                sum + 0.398_942_3 * libm::expf(-0.5 * z * z) * step * of(z)
+            })
+        };
+        let last = (LAYERS * 4) as f32;
+        let width_per_m =
+            std::array::from_fn(|i| fibre.density_per_m2 * slopes.stretch * width(tips * i as f32 / last));
+        Self { slopes, width_per_m }
+    }
+
+    fn at(&self, share: f32) -> f32 {
+        let at = share.clamp(0.0, 1.0) * (LAYERS * 4) as f32;
+        let low = (at as usize).min(LAYERS * 4 - 1);
+        self.width_per_m[low] + (at - low as f32) * (self.width_per_m[low + 1] - self.width_per_m[low])
+    }
+}
+
+/// Shadows by vertex, filled when first needed; each depends on nothing but its vertex.
+#[derive(Debug)]
+pub struct MeanShadow<'a> {
+    shell: Shell<'a>,
+    /// Height of the tallest hair over the shell's.
+    tips: f32,
+    kinds: [Option<Kind>; 2],
+    to_light: Vec3,
+    /// Triangles around each vertex's position class.
+    around: Vec<Vec<u32>>,
+    cells: Vec<OnceLock<Depths>>,
+}
+
+impl<'a> MeanShadow<'a> {
+    /// Of a pelt; none where nothing grows.
+    pub fn new(pelt: &Pelt<'a>, to_light: Vec3) -> Option<Self> {
+        let guard = pelt.guard.map(|(_, fibre)| fibre);
+        let of_shell = Undercoat::new(pelt.undercoat.or(guard)?, None);
+        let shell_m = of_shell.height_m;
+        if shell_m <= 0.0 {
+            return None;
+        }
+        let tips = guard.map_or(1.0, |fibre| (fibre.height_m() / shell_m).max(1.0));
+        let mut around = vec![Vec::new(); pelt.skin.positions_m.len()];
+        for (t, triangle) in pelt.skin.triangles.iter().enumerate() {
+            for &v in triangle {
+                around[pelt.skin.position_class[v as usize] as usize].push(t as u32);
+            }
+        }
+        Some(Self {
+            shell: Shell::new(pelt.skin, pelt.fields, of_shell),
+            tips,
+            kinds: [pelt.undercoat, guard].map(|fibre| fibre.map(|fibre| Kind::new(fibre, shell_m, tips))),
+            to_light,
+            cells: std::iter::repeat_with(OnceLock::new).take(around.len()).collect(),
+            around,
+        })
+    }
+
+    /// Depths on the skin, both kinds together.
+    pub fn on_skin(&self, triangle: u32, b: Vec3) -> f32 {
+        self.column(triangle, b)[0]
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.shell.bytes() + self.cells.len() * size_of::<OnceLock<Depths>>()
+    }
+
+    /// Depths of both kinds together in the column over a point of the skin.
+    pub fn column(&self, triangle: u32, b: Vec3) -> Column {
+        let corners = self.corners(triangle);
+        let b = b.to_array();
+        std::array::from_fn(|i| (0..3).map(|c| (corners[c][i][0] + corners[c][i][1]) * b[c]).sum())
+    }
+
+    fn corners(&self, triangle: u32) -> [&Depths; 3] {
+        let skin = self.shell.skin;
+        skin.triangles[triangle as usize].map(|v| self.cell(skin.position_class[v as usize]))
+    }
+
+    /// Depths by vertex, height and kind, for the devices that look them up themselves.
+    pub fn of_vertices(&self) -> Vec<f32> {
+        let classes = &self.shell.skin.position_class;
+        classes.par_iter().flat_map_iter(|&class| self.cell(class).as_flattened().iter().copied()).collect()
+    }
+
+    /// Guard hair's part of the depth at a place of undercoat's shell.
+    pub fn guard_depth(&self, triangle: u32, b: Vec3, t: f32) -> f32 {
+        let at = (t / self.tips).clamp(0.0, 1.0) * LAYERS as f32;
+        let low = (at as usize).min(LAYERS - 1);
+        let corners = self.corners(triangle);
+        let [from, to] =
+            [low, low + 1].map(|i| corners[0][i][1] * b.x + corners[1][i][1] * b.y + corners[2][i][1] * b.z);
+        from + (at - low as f32) * (to - from)
+    }
+
+    /// Height in a column, as a share of the tips', of hair `height_m` above skin whose hair is `length` times as long as
+    /// the preset's.
+    pub fn share(&self, height_m: f32, length: f32) -> f32 {
+        height_m / (self.shell.undercoat.height_m * self.tips * length.max(1e-3))
+    }
+
+    fn cell(&self, class: u32) -> &Depths {
+        self.cells[class as usize]
+            .get_or_init(|| std::array::from_fn(|i| self.depths(class, self.tips * i as f32 / LAYERS as f32)))
+    }
+
+    /// Depths from above a vertex: through the prism around it into which the light's direction leads.
+    fn depths(&self, class: u32, t: f32) -> [f32; 2] {
+        let mut best: Option<([f32; 4], u32, Place)> = None;
+        for &triangle in &self.around[class as usize] {
+            let corners = self.shell.skin.triangles[triangle as usize];
+            let Some(corner) = corners.iter().position(|&v| self.shell.skin.position_class[v as usize] == class) else {
+                continue;
+            };
+            let place = Place { b: [f32::from(u8::from(corner == 1)), f32::from(u8::from(corner == 2))], t };
+            let rates = self.shell.prism(triangle).jacobian(&place).rates(self.to_light);
+            let rates = [-rates.x - rates.y, rates.x, rates.y];
+            let least = rates[(corner + 1) % 3].min(rates[(corner + 2) % 3]);
+            // Of equals, the one that lies first in space: their order in the mesh must not show.
+            let [p, q, r] = self.shell.skin.corners_m(triangle as usize);
+            let key = [least, -(p + q + r).x, -(p + q + r).y, -(p + q + r).z];
+            if best.as_ref().is_none_or(|(most, ..)| key.partial_cmp(most) == Some(std::cmp::Ordering::Greater)) {
+                best = Some((key, triangle, place));
+            }
+        }
+        match best {
+            // No prism lies that way: the light comes over an open border.
+            Some(([least, ..], triangle, place)) if least > -1e-3 / self.shell.undercoat.height_m => {
+                self.march(triangle, place)
+            }
+            _ => [0.0; 2],
+        }
+    }
+
+    fn march(&self, mut triangle: u32, mut place: Place) -> [f32; 2] {
+        let mut sum = [0.0_f32; 2];
+        let mut prism = self.shell.prism(triangle);
+        let origin_m = prism.jacobian(&place).at_m;
+        let direction = self.to_light;
+        let mut at_m = 0.0;
+        for _ in 0..MOST_STEPS {
+            let j = prism.jacobian(&place);
+            place = place.moved(j.rates(origin_m + direction * at_m - j.at_m), 1.0);
+            let rates = j.rates(direction);
+            if !rates.is_finite() || rates == Vec3::ZERO || sum[0] + sum[1] > DARK {
+                return sum;
+            }
+            let thickness_m = j.up_m.length() * self.tips / LAYERS as f32;
+            let (side, after_m) = self.next_side(&place, rates);
+            let length_m = after_m.max(0.0).min(1.5 * thickness_m);
+            let middle = place.moved(rates, 0.5 * length_m);
+            let b = middle.barycentric();
+            let up_m = j.up_m.length();
+            let sine = (j.up_m / up_m).cross(direction).length();
+            let standing = self.shell.scalar(&self.shell.fields.density, triangle, b)
+                * (2.0 * self.shell.skin.rest_area_m2(triangle as usize))
+                / j.determinant.abs();
+            for (sum, kind) in sum.iter_mut().zip(&self.kinds) {
+                let Some(kind) = kind else { continue };
+                let depth = standing * up_m * kind.at(middle.t / self.tips) * kind.slopes.mean_sine(sine) * length_m;
+                *sum += if depth.is_finite() { depth } else { 0.0 };
+            }
+            at_m += length_m;
+            place = place.moved(rates, length_m);
+            if length_m < after_m {
+                continue;
+            }
+            let Some(beyond) = side.and_then(|corner| self.shell.neighbours.beyond(triangle, corner)) else {
+                return sum;
+            };
+            let b = place.barycentric().to_array();
+            let (from, to) = (side.unwrap_or(0), usize::from(beyond.corner));
+            let mut next = [0.0; 3];
+            // The neighbour runs through the shared edge the other way around.
+            next[(to + 1) % 3] = b[(from + 2) % 3];
+            next[(to + 2) % 3] = b[(from + 1) % 3];
+            let whole = next[0] + next[1] + next[2];
+            place.b = [next[1] / whole, next[2] / whole];
+            triangle = beyond.triangle;
+            prism = self.shell.prism(triangle);
+            at_m += 1e-7 * thickness_m;
+        }
+        sum
+    }
+
+    /// The side passed first: opposite to a corner, or none for the tips and the skin; and after what distance, m.
+    fn next_side(&self, place: &Place, rates: Vec3) -> (Option<usize>, f32) {
+        let b = place.barycentric();
+        let sides = [
+            (Some(0), b.x, -rates.x - rates.y),
+            (Some(1), b.y, rates.x),
+            (Some(2), b.z, rates.y),
+            (None, self.tips - place.t, -rates.z),
+            (None, place.t, rates.z),
+        ];
+        let passed = sides.into_iter().filter(|side| side.2 < 0.0).map(|(side, left, rate)| (side, left / -rate));
+        passed.fold((None, f32::INFINITY), |first, next| if next.1 < first.1 { next } else { first })
+    }
+}
+
+/// The depth at a height, given as a share of the tips'.
+pub fn at(column: &Column, share: f32) -> f32 {
+    let at = share.clamp(0.0, 1.0) * LAYERS as f32;
+    let low = (at as usize).min(LAYERS - 1);
+    column[low] + (at - low as f32) * (column[low + 1] - column[low])
+}

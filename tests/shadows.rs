@@ -1,0 +1,108 @@
+//! The key light's shadow: stored depths, hair in the mean, and what a pelt hides from behind.
+
+use crate::pelts::{self, Grown};
+use furrier::math::Vec3;
+use furrier::math::lanes::{self, F32s, Isa, Vec3s, Work};
+use furrier::render::mean::{self, MeanShadow};
+use furrier::render::pelt::Layer;
+use furrier::render::picture::{Settings, draw};
+use furrier::render::shell::lattice::{self, Lattice, Lattices};
+
+/// What a lattice holds at a place, in the first lane.
+struct Read<'a> {
+    lattice: &'a Lattice,
+    layers: u32,
+    b: Vec3,
+    t: f32,
+}
+
+impl Work for Read<'_> {
+    type Output = f32;
+
+    #[inline(always)]
+    fn run<I: Isa>(self) -> f32 {
+        let mut lattices = Lattices::new(self.layers);
+        (0..I::LANES).for_each(|lane| lattices.set(lane, self.lattice));
+        let on = F32s::<I>::splat(1.0).gt(F32s::splat(0.0));
+        lattices.at(Vec3s::splat(self.b), F32s::splat(self.t), on).row().0[0]
+    }
+}
+
+#[test]
+fn stored_shadows_are_linear_between_corners_and_levels() {
+    let layers = 4;
+    let depth = |b: Vec3, t: f32| 1.0 + 2.0 * b.y + 0.5 * b.z + 1.5 * t;
+    for d in 0..4 {
+        let level = |i: u32| lattice::places(d).map(move |b| depth(b, i as f32 / layers as f32));
+        assert_eq!(lattice::places(d).count(), lattice::corners(d) as usize);
+        let values: Vec<f32> = (0..=layers).flat_map(level).collect();
+        let stored = Lattice::new(d, &values);
+        for (b, t) in [
+            (Vec3::new(1.0, 0.0, 0.0), 0.0),
+            (Vec3::new(0.0, 1.0, 0.0), 1.0),
+            (Vec3::new(0.0, 0.0, 1.0), 0.5),
+            (Vec3::new(0.0, 0.37, 0.63), 0.9),
+            (Vec3::new(0.21, 0.33, 0.46), 0.13),
+            (Vec3::new(0.55, 0.44, 0.01), 0.71),
+        ] {
+            let found = lanes::run(Read { lattice: &stored, layers, b, t });
+            // A byte holds a depth within two hundredths of it up to here.
+            assert!((found / depth(b, t) - 1.0).abs() < 0.02, "d {d}, {b} {t}: {found}, {}", depth(b, t));
+        }
+    }
+}
+
+#[test]
+fn mean_shadow_is_a_flat_layers_far_from_borders_and_nothing_on_one_towards_the_light() {
+    let (mut guard, mut undercoat) = pelts::mink();
+    (guard.density_per_cm2, undercoat.density_per_cm2) = (30.0, 900.0);
+    // The closed form knows neither taper nor transparent tips.
+    (guard.taper, guard.tip_transparency) = (1.0, 0.0);
+    (guard.shape.jitter_deg, undercoat.shape.jitter_deg) = (0.0, 0.0);
+    let mesh = pelts::grid(12, 12, |u, v| Vec3::new((u - 0.5) * 0.6, 0.0, (0.5 - v) * 0.6));
+    let grown = Grown::new(mesh, &guard, &undercoat, Vec3::X, 0.0, 3);
+    let pelt = grown.pelt();
+    let to_light = Vec3::new(0.6, 0.8, 0.0);
+    let shadow = MeanShadow::new(&pelt, to_light).unwrap();
+    let layers = [pelt.guard.unwrap().1, pelt.undercoat.unwrap()].map(|fibre| Layer::new(fibre, 1.0, 1.0));
+    let middle = (0..pelt.skin.triangles.len() as u32)
+        .min_by(|&a, &b| {
+            let far = |t: u32| pelt.skin.corners_m(t as usize).iter().map(|p| p.length()).sum::<f32>();
+            far(a).total_cmp(&far(b))
+        })
+        .unwrap();
+    let column = shadow.column(middle, Vec3::splat(1.0 / 3.0));
+    for share in [0.0, 0.25, 0.5] {
+        let height_m = share / shadow.share(1.0, 1.0);
+        let expected = layers.iter().map(|layer| layer.above(height_m)).sum::<f32>() * 0.6 / 0.8;
+        let found = mean::at(&column, share);
+        assert!((found / expected - 1.0).abs() < 0.02, "at {share}: {found}, flat {expected}");
+    }
+    let border = pelt.skin.positions_m.iter().map(|p| p.x).fold(f32::MIN, f32::max);
+    let of_vertices = shadow.of_vertices();
+    let per_vertex = of_vertices.len() / pelt.skin.positions_m.len();
+    for (v, p) in pelt.skin.positions_m.iter().enumerate().filter(|(_, p)| p.x == border) {
+        let depths = &of_vertices[v * per_vertex..(v + 1) * per_vertex];
+        assert!(depths.iter().all(|&depth| depth < 1e-4), "at {p}: {depths:?}");
+    }
+}
+
+/// Greatest share of guard hair over the bare side of a bent pelt that is seen from below, well inside its outline.
+#[test]
+fn no_hair_shows_through_the_bare_side() {
+    let (guard, undercoat) = pelts::mink();
+    let grown = Grown::new(pelts::bent_pelt(2), &guard, &undercoat, Vec3::X, 35.0, 3);
+    let centre = grown.mesh.positions_m.iter().sum::<Vec3>() / grown.mesh.positions_m.len() as f32;
+    let below = pelts::looking(centre - Vec3::new(0.0, 0.25, 0.03), centre, Vec3::X, 34.0);
+    let settings = Settings { size: [64, 64], ..Settings::default() };
+    let film = draw(&grown.pelt(), &pelts::studio(), &below, &settings).unwrap().film;
+    let skin = |i: usize| film.alpha[i] - film.guard[i] - film.undercoat[i];
+    let inside = (0..film.alpha.len()).filter(|&i| {
+        let (x, y) = (i % 64, i / 64);
+        x > 1 && y > 1 && x < 62 && y < 62 && [i - 2, i + 2, i - 128, i + 128].iter().all(|&near| skin(near) > 0.9)
+    });
+    let shown: Vec<f32> = inside.map(|i| film.guard[i]).collect();
+    assert!(shown.len() > 100, "{} pixels of bare skin", shown.len());
+    let worst = shown.iter().copied().fold(0.0, f32::max);
+    assert!(worst < 0.02, "{worst}");
+}
