@@ -13,6 +13,9 @@ use std::sync::OnceLock;
 /// Intervals of height up to the tips.
 const LAYERS: usize = 24;
 
+/// Longest step, as a share of the tips' height over the skin.
+const STEP: f32 = 1.0 / 16.0;
+
 /// Optical depth beyond which no light is left.
 const DARK: f32 = 15.0;
 
@@ -153,8 +156,18 @@ impl<'a> MeanShadow<'a> {
     }
 
     fn cell(&self, class: u32) -> &Depths {
-        self.cells[class as usize]
-            .get_or_init(|| std::array::from_fn(|i| self.depths(class, self.tips * i as f32 / LAYERS as f32)))
+        self.cells[class as usize].get_or_init(|| {
+            let mut depths = Depths::default();
+            let mut above = [0.0; 2];
+            for (i, depth) in depths.iter_mut().enumerate().rev() {
+                // Below where no light is left there is none.
+                if above[0] + above[1] < DARK {
+                    above = self.depths(class, self.tips * i as f32 / LAYERS as f32);
+                }
+                *depth = above;
+            }
+            depths
+        })
     }
 
     /// Depths from above a vertex: through the prism around it into which the light's direction leads.
@@ -198,9 +211,9 @@ impl<'a> MeanShadow<'a> {
             if !rates.is_finite() || rates == Vec3::ZERO || sum[0] + sum[1] > DARK {
                 return sum;
             }
-            let thickness_m = j.up_m.length() * self.tips / LAYERS as f32;
+            let tips_m = j.up_m.length() * self.tips;
             let (side, after_m) = self.next_side(&place, rates);
-            let length_m = after_m.max(0.0).min(1.5 * thickness_m);
+            let length_m = after_m.max(0.0).min(STEP * tips_m);
             let middle = place.moved(rates, 0.5 * length_m);
             let b = middle.barycentric();
             let up_m = j.up_m.length();
@@ -231,7 +244,7 @@ impl<'a> MeanShadow<'a> {
             place.b = [next[1] / whole, next[2] / whole];
             triangle = beyond.triangle;
             prism = self.shell.prism(triangle);
-            at_m += 1e-7 * thickness_m;
+            at_m += 1e-8 * tips_m;
         }
         sum
     }

@@ -207,7 +207,8 @@ impl Pass<'_> {
     fn hair_face(&self, strands: &Strands, band: &Band, fragment: &Fragment) -> Face {
         let at = fragment.knot as usize;
         let (a, b) = (&band.looks[at], &band.looks[at + 1]);
-        let radiance = a.log_radiance.lerp(b.log_radiance, fragment.along).map(exp);
+        let log = a.log_radiance.lerp(b.log_radiance, fragment.along);
+        let radiance = Vec3::new(exp(log.x), exp(log.y), exp(log.z));
         if self.settings.layers == Layers::Light {
             return Face { radiance, ..Face::default() };
         }

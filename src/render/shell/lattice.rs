@@ -73,21 +73,25 @@ impl<'a> Lattices<'a> {
         let (fu, fv) = (u - i, v - j);
         // The sub-element that points the other way; none beyond the edge opposite to corner 0, where rounding may lead.
         let turned = (fu + fv).gt(one) & (n - 1.0).gt(i + j);
-        let corner = |i: F32s<I>, j: F32s<I>| (j * (n * 2.0 + 3.0 - j) * 0.5 + i).to_whole();
         let shift = turned.keep(one);
-        let corners = [corner(i + shift, j + shift), corner(i + 1.0, j), corner(i, j + 1.0)];
+        let corners = [corner(n, i + shift, j + shift), corner(n, i + 1.0, j), corner(n, i, j + 1.0)];
         let rest = one - fu - fv;
-        let weights = [turned.select(-rest, rest), turned.select(one - fv, fu), turned.select(one - fu, fv)];
+        let weights = Vec3s::new(turned.select(-rest, rest), turned.select(one - fv, fu), turned.select(one - fu, fv));
         let per_level = ((n + 1.0) * (n + 2.0) * 0.5).to_whole();
         let at = t.within(0.0, 1.0) * self.layers;
         let low = at.floor().min(F32s::splat(self.layers - 1.0));
-        let level = |level: F32s<I>| {
-            let first = level.to_whole().times(per_level);
-            let [a, b, c] = corners.map(|corner| self.fetch(first.plus(corner), on));
-            a * weights[0] + b * weights[1] + c * weights[2]
-        };
-        let (from, to) = (level(low), level(low + 1.0));
+        let first = low.to_whole().times(per_level);
+        let from = self.level(first, &corners, weights, on);
+        let to = self.level(first.plus(per_level), &corners, weights, on);
         (from + (at - low) * (to - from)).max(zero)
+    }
+
+    #[inline(always)]
+    fn level<I: Isa>(&self, first: U32s<I>, corners: &[U32s<I>; 3], weights: Vec3s<I>, on: Mask<I>) -> F32s<I> {
+        let a = self.fetch(first.plus(corners[0]), on);
+        let b = self.fetch(first.plus(corners[1]), on);
+        let c = self.fetch(first.plus(corners[2]), on);
+        a * weights.x + b * weights.y + c * weights.z
     }
 
     #[inline(always)]
@@ -98,4 +102,10 @@ impl<'a> Lattices<'a> {
         let root = byte * (1.0 / 255.0);
         root * root * LARGEST
     }
+}
+
+/// Index of the corner `i` steps towards corner 1 and `j` towards corner 2 in a level split into rows of `n`.
+#[inline(always)]
+fn corner<I: Isa>(n: F32s<I>, i: F32s<I>, j: F32s<I>) -> U32s<I> {
+    (j * (n * 2.0 + 3.0 - j) * 0.5 + i).to_whole()
 }
