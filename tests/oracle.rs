@@ -1,15 +1,11 @@
 //! The renderer against the reference, and the reference against closed forms.
 
 use crate::pelts::{self, Grown};
-use crate::undercoat::{Cylinders, depth_of_volume, directions, level};
-use furrier::data::fields::Fields;
+use crate::undercoat::{Cylinders, depth_of_volume, directions, on_level_skin};
 use furrier::data::film::Film;
-use furrier::data::strands::Profile;
-use furrier::fur::groom::Shape;
-use furrier::fur::groom::fibre::Fibre;
 use furrier::math::{DVec3, Vec3};
 use furrier::metrics::compare::{Difference, Light, compare};
-use furrier::render::pelt::{Hair, Lighting, Pelt};
+use furrier::render::pelt::Lighting;
 use furrier::render::picture::{self, draw};
 use furrier::render::reference::bvh::Ray;
 use furrier::render::reference::medium::{Counted, Medium};
@@ -17,38 +13,14 @@ use furrier::render::reference::{self, Settings};
 
 /// Optical depth of the reference's medium along a ray from above through hair of one length on level skin.
 fn depth_of_reference(hairs: &Cylinders, direction: DVec3) -> f64 {
-    let mesh = level((hairs.length_m * 60.0) as f32);
-    let n = mesh.positions_m.len();
-    let fields = Fields {
-        length: vec![1.0; n],
-        density: vec![1.0; n],
-        direction: vec![Vec3::X; n],
-        lean: vec![hairs.lean.as_vec3(); n],
-        clump: vec![0.0; n],
-        tint: vec![Vec3::ONE; n],
-    };
-    let fibre = Fibre {
-        density_per_m2: hairs.per_m2 as f32,
-        length_m: hairs.length_m as f32,
-        radius_m: (0.5 * hairs.diameter_m) as f32,
-        shape: Shape { length_variation: 0.0, jitter_deg: 0.0, ..Shape::default() },
-        profile: Profile { taper: 1.0, ramp: [Vec3::ONE; 3], tip_transparency: 0.0, tip_exponent: 1.0 },
-        variation: 0.0,
-    };
-    let pelt = Pelt {
-        skin: &mesh,
-        fields: &fields,
-        skin_factor: Vec3::ONE,
-        guard: None,
-        undercoat: Some(&fibre),
-        hair: Hair::default(),
-    };
-    let normals = mesh.smooth_normals();
-    let medium = Medium::new(&pelt, &normals, None).unwrap();
-    // Through a point over the middle, off any lattice line.
-    let through = DVec3::new(0.13, 0.29, 1.0) * hairs.length_m;
-    let ray = Ray::new(through - direction * (20.0 * hairs.length_m), direction);
-    medium.depth_along(&ray, 0.0, f64::INFINITY, Counted::Undercoat, f64::INFINITY)
+    on_level_skin(hairs, |pelt| {
+        let normals = pelt.skin.smooth_normals();
+        let medium = Medium::new(pelt, &normals, None).unwrap();
+        // Through a point over the middle, off any lattice line.
+        let through = DVec3::new(0.13, 0.29, 1.0) * hairs.length_m;
+        let ray = Ray::new(through - direction * (20.0 * hairs.length_m), direction);
+        medium.depth_along(&ray, 0.0, f64::INFINITY, Counted::Undercoat, f64::INFINITY)
+    })
 }
 
 #[test]

@@ -95,10 +95,9 @@ pub fn level(edge_m: f32) -> Mesh {
     pelts::grid(8, 8, |u, v| Vec3::new(u - 0.5, v - 0.5, 0.0) * edge_m)
 }
 
-/// Optical depth of the volume that stands for the cylinders, along a ray through the middle of its top.
-pub fn depth_of_volume(hairs: &Cylinders, direction: DVec3) -> f64 {
-    let edge_m = (hairs.length_m * 60.0) as f32;
-    let mesh = level(edge_m);
+/// A level pelt of undercoat like the cylinders.
+pub fn on_level_skin<T>(hairs: &Cylinders, with: impl FnOnce(&Pelt<'_>) -> T) -> T {
+    let mesh = level((hairs.length_m * 60.0) as f32);
     let n = mesh.positions_m.len();
     let fields = Fields {
         length: vec![1.0; n],
@@ -108,28 +107,35 @@ pub fn depth_of_volume(hairs: &Cylinders, direction: DVec3) -> f64 {
         clump: vec![0.0; n],
         tint: vec![Vec3::ONE; n],
     };
-    let profile = Profile { taper: 1.0, ramp: [Vec3::ONE; 3], tip_transparency: 0.0, tip_exponent: 1.0 };
-    let shape = Shape { length_variation: 0.0, jitter_deg: 0.0, ..Shape::default() };
     let fibre = Fibre {
         density_per_m2: hairs.per_m2 as f32,
         length_m: hairs.length_m as f32,
         radius_m: (0.5 * hairs.diameter_m) as f32,
-        shape,
-        profile,
+        shape: Shape { length_variation: 0.0, jitter_deg: 0.0, ..Shape::default() },
+        profile: Profile { taper: 1.0, ramp: [Vec3::ONE; 3], tip_transparency: 0.0, tip_exponent: 1.0 },
         variation: 0.0,
     };
-    let pelt = Pelt {
+    with(&Pelt {
         skin: &mesh,
         fields: &fields,
         skin_factor: Vec3::ONE,
         guard: None,
         undercoat: Some(&fibre),
         hair: Hair::default(),
-    };
+    })
+}
+
+/// Optical depth of the volume that stands for the cylinders, along a ray through the middle of its top.
+pub fn depth_of_volume(hairs: &Cylinders, direction: DVec3) -> f64 {
+    on_level_skin(hairs, |pelt| depth_of_pelt(pelt, direction))
+}
+
+fn depth_of_pelt(pelt: &Pelt<'_>, direction: DVec3) -> f64 {
+    let mesh = pelt.skin;
     let normals = mesh.smooth_normals();
     let subdivisions = vec![3; mesh.triangles.len()];
     let resolution = Resolution { pattern: None, ..Resolution::default() };
-    let volume = Volume::new(&pelt, &normals, Vec3::Z, resolution, subdivisions).unwrap();
+    let volume = Volume::new(pelt, &normals, Vec3::Z, resolution, subdivisions).unwrap();
     // A triangle near the middle, entered at its top.
     let triangle = mesh.triangles.len() as u32 / 2 + 8;
     let place = Place { b: [0.3, 0.3], t: 1.0 };
