@@ -3,7 +3,7 @@
 use crate::pelts::{self, Grown};
 use furrier::math::Vec3;
 use furrier::math::lanes::{self, F32s, Isa, Vec3s, Work};
-use furrier::render::mean::{self, MeanShadow};
+use furrier::render::mean::MeanShadow;
 use furrier::render::pelt::Layer;
 use furrier::render::picture::{Settings, draw};
 use furrier::render::shell::lattice::{self, Lattice, Lattices};
@@ -71,11 +71,10 @@ fn mean_shadow_is_a_flat_layers_far_from_borders_and_nothing_on_one_towards_the_
             far(a).total_cmp(&far(b))
         })
         .unwrap();
-    let column = shadow.column(middle, Vec3::splat(1.0 / 3.0));
     for share in [0.0, 0.25, 0.5] {
         let height_m = share / shadow.share(1.0, 1.0);
         let expected = layers.iter().map(|layer| layer.above(height_m)).sum::<f32>() * 0.6 / 0.8;
-        let found = mean::at(&column, share);
+        let found: f32 = shadow.at(middle, Vec3::splat(1.0 / 3.0), share).iter().sum();
         assert!((found / expected - 1.0).abs() < 0.02, "at {share}: {found}, flat {expected}");
     }
     let border = pelt.skin.positions_m.iter().map(|p| p.x).fold(f32::MIN, f32::max);

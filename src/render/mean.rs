@@ -25,9 +25,6 @@ const MOST_STEPS: usize = 512;
 /// Optical depths of undercoat and guard hair towards the key light at heights from the skin to the tips.
 pub type Depths = [[f32; 2]; LAYERS + 1];
 
-/// Optical depths of both kinds together at the same heights.
-pub type Column = [f32; LAYERS + 1];
-
 /// A kind of hair in the mean.
 #[derive(Clone, Debug)]
 struct Kind {
@@ -111,21 +108,21 @@ impl<'a> MeanShadow<'a> {
         })
     }
 
-    /// Depths on the skin, both kinds together.
-    pub fn on_skin(&self, triangle: u32, b: Vec3) -> f32 {
-        self.column(triangle, b)[0]
-    }
-
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.shell.bytes() + self.cells.len() * size_of::<OnceLock<Depths>>()
     }
 
-    /// Depths of both kinds together in the column over a point of the skin.
-    pub fn column(&self, triangle: u32, b: Vec3) -> Column {
-        let corners = self.corners(triangle);
-        let b = b.to_array();
-        std::array::from_fn(|i| (0..3).map(|c| (corners[c][i][0] + corners[c][i][1]) * b[c]).sum())
+    /// Optical depths of undercoat and guard hair in the column over a point of the skin, at a height given as a share of the
+    /// tips'.
+    pub fn at(&self, triangle: u32, b: Vec3, share: f32) -> [f32; 2] {
+        let at = share.clamp(0.0, 1.0) * LAYERS as f32;
+        let low = (at as usize).min(LAYERS - 1);
+        let [p, q, r] = self.corners(triangle);
+        [0, 1].map(|kind| {
+            let [from, to] = [low, low + 1].map(|i| p[i][kind] * b.x + q[i][kind] * b.y + r[i][kind] * b.z);
+            from + (at - low as f32) * (to - from)
+        })
     }
 
     fn corners(&self, triangle: u32) -> [&Depths; 3] {
@@ -141,12 +138,7 @@ impl<'a> MeanShadow<'a> {
 
     /// Guard hair's part of the depth at a place of undercoat's shell.
     pub fn guard_depth(&self, triangle: u32, b: Vec3, t: f32) -> f32 {
-        let at = (t / self.tips).clamp(0.0, 1.0) * LAYERS as f32;
-        let low = (at as usize).min(LAYERS - 1);
-        let corners = self.corners(triangle);
-        let [from, to] =
-            [low, low + 1].map(|i| corners[0][i][1] * b.x + corners[1][i][1] * b.y + corners[2][i][1] * b.z);
-        from + (at - low as f32) * (to - from)
+        self.at(triangle, b, t / self.tips)[1]
     }
 
     /// Height in a column, as a share of the tips', of hair `height_m` above skin whose hair is `length` times as long as
@@ -262,11 +254,4 @@ impl<'a> MeanShadow<'a> {
         let passed = sides.into_iter().filter(|side| side.2 < 0.0).map(|(side, left, rate)| (side, left / -rate));
         passed.fold((None, f32::INFINITY), |first, next| if next.1 < first.1 { next } else { first })
     }
-}
-
-/// The depth at a height, given as a share of the tips'.
-pub fn at(column: &Column, share: f32) -> f32 {
-    let at = share.clamp(0.0, 1.0) * LAYERS as f32;
-    let low = (at as usize).min(LAYERS - 1);
-    column[low] + (at - low as f32) * (column[low + 1] - column[low])
 }

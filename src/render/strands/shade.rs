@@ -4,7 +4,7 @@ use super::Look;
 use crate::data::strands::Strands;
 use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, Row, Vec3Row, Vec3s};
-use crate::render::mean::{self, MeanShadow};
+use crate::render::mean::MeanShadow;
 use crate::render::pelt::{Layer, Lighting, Pelt, ramps, sky_depths, slant_depths, terminator, terminators, through};
 use crate::render::table::Table;
 use crate::shade::lobes::Lobes;
@@ -72,7 +72,7 @@ impl<'a> GuardShader<'a> {
 
         // Hair is shadowed as the column over its own root is at its height.
         let lit = terminator(self.lighting.key.to_light, normal) > 0.0;
-        let column = self.mean.filter(|_| lit).map(|mean| (mean, mean.column(root.triangle, b)));
+        let mean = self.mean.filter(|_| lit);
         let points = strands.points_of_m(strand);
         let last = points.len() - 1;
         for first in (0..points.len()).step_by(I::LANES) {
@@ -94,9 +94,13 @@ impl<'a> GuardShader<'a> {
                 normal,
                 lean: Vec3s::splat(lean),
                 above: self.above.at_lanes(height_m * share_of_top) * factor,
-                key_depth: column.map_or(F32s::splat(0.0), |(mean, column)| {
+                key_depth: mean.map_or(F32s::splat(0.0), |mean| {
                     let share = (height_m * mean.share(1.0 / rise, length)).row();
-                    F32s::each(|lane| mean::at(&column, share.0[lane]))
+                    let mut depth = Row::default();
+                    for lane in 0..count {
+                        depth.0[lane] = mean.at(root.triangle, b, share.0[lane]).iter().sum();
+                    }
+                    F32s::of(&depth)
                 }),
             };
             let Vec3s { x, y, z } = self.radiance(&spot);
