@@ -2,7 +2,7 @@
 #import furrier::scene::{scene, triangles, vertices, strands, point_of, unit_or}
 #import furrier::camera::{view, pixel_count, pixel_of, direction_through, ray_through, camera_from_world, flat_of, meet,
     skin_triangle, heads}
-#import furrier::guard::{guard_ramp, opacity_at, along_hair}
+#import furrier::guard::{LOOKS, guard_ramp, opacity_at, along_hair}
 #import furrier::fragments::{Fragment, read_from, next_fragment}
 #import furrier::stretch::{Stretch, unpack_albedo, unpack_tangent}
 #import furrier::skin_look::skin_look
@@ -32,9 +32,17 @@ struct Front {
     undercoat: f32,
 }
 
-// Logarithm of the opaque hair's radiance: shadow, and radiance with it, goes exponentially from point to point.
-fn log_look_of(point: u32) -> vec3<f32> {
-    return vec3(looks[3u * point], looks[3u * point + 1u], looks[3u * point + 2u]);
+// Logarithm of the opaque hair's radiance: shadow, and radiance with it, goes exponentially from look to look.
+fn log_look(index: u32) -> vec3<f32> {
+    return vec3(looks[3u * index], looks[3u * index + 1u], looks[3u * index + 2u]);
+}
+
+// Radiance of a strand at s in [0, 1] along it.
+fn radiance_at(strand: u32, s: f32) -> vec3<f32> {
+    let at = s * s * f32(LOOKS - 1u);
+    let low = min(u32(at), LOOKS - 2u);
+    let index = strand * LOOKS + low;
+    return exp(mix(log_look(index), log_look(index + 1u), at - f32(low)));
 }
 
 fn opacity_of(fragment: Fragment) -> f32 {
@@ -43,10 +51,11 @@ fn opacity_of(fragment: Fragment) -> f32 {
 
 fn add_hair(front: ptr<function, Front>, fragment: Fragment) {
     let weight = (*front).through * opacity_of(fragment);
-    let ramp = mix(guard_ramp(along_hair(fragment.point, 0.0)), guard_ramp(along_hair(fragment.point, 1.0)), fragment.along);
+    let strand = fragment.point / scene.points_per_strand;
+    let s = along_hair(fragment.point, fragment.along);
     let tangent = unit_or(point_of(fragment.point + 1u) - point_of(fragment.point), vec3(0.0));
-    (*front).radiance += weight * exp(mix(log_look_of(fragment.point), log_look_of(fragment.point + 1u), fragment.along));
-    (*front).albedo += weight * strands[fragment.point / scene.points_per_strand].tint * ramp;
+    (*front).radiance += weight * radiance_at(strand, s);
+    (*front).albedo += weight * strands[strand].tint * guard_ramp(s);
     (*front).tangent += weight * tangent;
     (*front).z_m += weight * fragment.z_m;
     (*front).guard += weight;

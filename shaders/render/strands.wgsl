@@ -1,30 +1,40 @@
 // Light on guard hair, one thread per strand, as src/render/strands/shade.rs.
 #import furrier::scene::{scene, Strand, strands, lights, point_of, normal_at, lean_at, density_at, length_at, unit_or}
 #import furrier::camera::view
-#import furrier::guard::{guard_ramp, root_of}
+#import furrier::guard::{LOOKS, guard_ramp, root_of}
 #import furrier::fur_light::{angles_of, cos_of, guard_lobes, shadow_power, slant_depth, sky_depth, terminator, above_both}
 #import furrier::mean_shadow::{mean_depths, tips_m}
 
-// Logarithm of radiance by point, three numbers each.
+// Logarithms of radiance, LOOKS of each strand, three numbers each.
 @group(3) @binding(0) var<storage, read_write> looks: array<f32>;
 
 // A point that no light reaches must not brighten its neighbours.
 const MOST_BEND: f32 = 0.25;
 
-// Logarithm of what point `i` of a strand sends to the eye.
-fn log_look(strand: Strand, first: u32, i: u32) -> vec3<f32> {
+// Mean of the two pieces that meet in point `i` of a strand, twice their length.
+fn step_at(first: u32, i: u32) -> vec3<f32> {
     let last = scene.points_per_strand - 1u;
+    let step = point_of(first + min(i + 1u, last)) - point_of(first + max(i, 1u) - 1u);
+    return step * select(1.0, 2.0, i == 0u || i >= last);
+}
+
+// Logarithm of what a strand sends to the eye at its look `i`.
+fn log_look(strand: Strand, first: u32, i: u32) -> vec3<f32> {
+    let s = sqrt(f32(i) / f32(LOOKS - 1u));
+    let at = s * f32(scene.points_per_strand - 1u);
+    let piece = min(u32(at), scene.points_per_strand - 2u);
+    let share = at - f32(piece);
     let b = root_of(strand);
     let normal = normal_at(strand.triangle, b);
     let lean = lean_at(strand.triangle, b, normal);
-    let point_m = point_of(first + i);
-    let behind = point_of(first + max(i, 1u) - 1u);
-    let along = unit_or(point_of(first + min(i + 1u, last)) - behind, lean);
+    let point_m = mix(point_of(first + piece), point_of(first + piece + 1u), share);
+    // The hair's direction turns evenly from point to point.
+    let along = unit_or(mix(step_at(first, piece), step_at(first, piece + 1u), share), lean);
     // Height along the lean, so that a leaning coat's layers are as thick as its hairs are long.
     let height_m = dot(point_m - point_of(first), normal) / max(dot(lean, normal), 0.05);
     let length = length_at(strand.triangle, b);
     let above = above_both(density_at(strand.triangle, b), length, height_m);
-    let albedo = strand.tint * guard_ramp(f32(i) / f32(last));
+    let albedo = strand.tint * guard_ramp(s);
     let to_eye = unit_or(view.eye_m - point_m, normal);
 
     let power = shadow_power(albedo * scene.guard_albedo);
@@ -69,26 +79,21 @@ fn shade(
     }
     let strand = strands[index];
     let first = index * scene.points_per_strand;
-    let last = scene.points_per_strand - 1u;
+    let begin = index * LOOKS;
     var before = log_look(strand, first, 0u);
     var here = log_look(strand, first, 1u);
-    if last < 2u {
-        put(first, before);
-        put(first + 1u, here);
-        return;
-    }
-    // Points are moved so that straight lines between them keep to the curve in the mean: they stray from it by a twelfth of
+    // Looks are moved so that straight lines between them keep to the curve in the mean: they stray from it by a twelfth of
     // its second difference.
     var bend = vec3(0.0);
-    for (var i = 1u; i < last; i++) {
+    for (var i = 1u; i < LOOKS - 1u; i++) {
         let next = log_look(strand, first, i + 1u);
         bend = clamp((before - here - here + next) / 12.0, vec3(-MOST_BEND), vec3(MOST_BEND));
         if i == 1u {
-            put(first, before - bend);
+            put(begin, before - bend);
         }
-        put(first + i, here - bend);
+        put(begin + i, here - bend);
         before = here;
         here = next;
     }
-    put(first + last, here - bend);
+    put(begin + LOOKS - 1u, here - bend);
 }

@@ -12,6 +12,7 @@ use crate::render::mean::MeanShadow;
 use crate::render::pelt::{Lighting, Pelt};
 use crate::render::picture::Settings;
 use crate::render::shell::lattice;
+use crate::render::strands::LOOKS;
 use crate::render::table::Table;
 use crate::render::view::View;
 
@@ -25,7 +26,7 @@ pub(super) struct GpuScene {
     pub faces: wgpu::Buffer,
     /// Prisms around the eye.
     pub inside: wgpu::Buffer,
-    /// Radiance of guard hair by point.
+    /// Logarithms of guard hair's radiance, [`LOOKS`] of each strand.
     pub looks: wgpu::Buffer,
     /// Triangles of the skin.
     pub triangle_count: usize,
@@ -185,7 +186,7 @@ impl GpuScene {
             volume,
             faces: gpu.read_only("faces", &faces)?,
             inside: gpu.read_only("prisms around the eye", &inside)?,
-            looks: gpu.storage("looks", points.len(), 12)?,
+            looks: gpu.storage("looks", strands.len() * LOOKS, 12)?,
             triangle_count: triangles.len(),
             face_count: faces.len(),
             piece_count: strands.len() * (per_strand - 1),
@@ -193,7 +194,7 @@ impl GpuScene {
             stored_bytes,
             bytes: [
                 size_of_val(&triangles[..]) + size_of_val(&vertices[..]) + size_of_val(&faces[..]),
-                size_of_val(&strands[..]) + 2 * size_of_val(points),
+                size_of_val(&strands[..]) + size_of_val(points) + strands.len() * LOOKS * 12,
             ],
             fill_ms: timer.read_ms(gpu)?,
         })

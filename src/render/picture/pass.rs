@@ -16,7 +16,7 @@ use crate::render::mean::MeanShadow;
 use crate::render::pelt::{Lighting, Pelt};
 use crate::render::skin::SkinTile;
 use crate::render::strands::shade::GuardShader;
-use crate::render::strands::{Knot, Look, project};
+use crate::render::strands::{Knot, LOOKS, project};
 use crate::render::table::Table;
 use crate::render::view::View;
 use rayon::prelude::*;
@@ -47,7 +47,8 @@ pub(super) struct Pass<'a> {
 pub(super) struct Band {
     pub(super) strands: Vec<u32>,
     pub(super) knots: Vec<Knot>,
-    pub(super) looks: Vec<Look>,
+    /// Logarithms of radiance, [`LOOKS`] of each strand.
+    pub(super) looks: Vec<Vec3>,
     pub(super) bins: Bins,
 }
 
@@ -126,7 +127,7 @@ impl<'a> Pass<'a> {
         for grid in bands {
             let start = Instant::now();
             let band = self.band(&grid, &strand_reach);
-            let bytes = band.knots.len() * (size_of::<Knot>() + size_of::<Look>()) + band.bins.bytes();
+            let bytes = size_of_val(&band.knots[..]) + size_of_val(&band.looks[..]) + band.bins.bytes();
             row(picture, "shaded strands", start, bytes);
             picture.counts.strands += band.strands.len() as u64;
 
@@ -208,7 +209,7 @@ impl<'a> Pass<'a> {
     /// Cuts the picture into bands of whole tile rows whose strands fit the budget.
     fn bands(&self, whole: &Grid, reaches: &[Reach]) -> Vec<Grid> {
         let points = self.guard.as_ref().map_or(0, |(strands, _)| strands.points_per_strand);
-        let per_strand = points * (size_of::<Knot>() + size_of::<Look>() + 12);
+        let per_strand = points * (size_of::<Knot>() + 12) + LOOKS * size_of::<Vec3>();
         let mut starting = vec![0_usize; whole.rows];
         let mut crossing = vec![0_isize; whole.rows + 1];
         for rows in reaches.iter().map(|reach| whole.touched(reach).1).filter(|rows| !rows.is_empty()) {
@@ -247,11 +248,11 @@ impl<'a> Pass<'a> {
         const CHUNK: usize = 512;
         let points = strands.points_per_strand;
         let size = visible.len() * points;
-        let (mut knots, mut looks) = (vec![Knot::default(); size], vec![Look::default(); size]);
+        let (mut knots, mut looks) = (vec![Knot::default(); size], vec![Vec3::ZERO; visible.len() * LOOKS]);
         visible
             .par_chunks(CHUNK)
-            .zip(knots.par_chunks_mut(CHUNK * points).zip(looks.par_chunks_mut(CHUNK * points)))
-            .for_each_init(Default::default, |scratch: &mut (Vec<Knot>, Vec<Look>), (chunk, (knots, looks))| {
+            .zip(knots.par_chunks_mut(CHUNK * points).zip(looks.par_chunks_mut(CHUNK * LOOKS)))
+            .for_each_init(Default::default, |scratch: &mut (Vec<Knot>, Vec<Vec3>), (chunk, (knots, looks))| {
                 let (some_knots, some_looks) = scratch;
                 some_knots.clear();
                 some_looks.clear();

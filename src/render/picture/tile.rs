@@ -7,7 +7,6 @@ use super::pass::{Band, Pass};
 use super::undercoat::{Look, PixelJourney};
 use crate::data::film::Layers;
 use crate::data::strands::Strands;
-use crate::math::fast::exp;
 use crate::math::lanes::{self, Isa};
 use crate::math::{Vec2, Vec3};
 use crate::render::bins::TILE;
@@ -17,7 +16,7 @@ use crate::render::march::{Journey, Start};
 use crate::render::resolve::{self, Blending, Face, Stretch};
 use crate::render::skin::{self, NONE, SkinTile};
 use crate::render::strands::ribbon::{self, Narrow, Share, Window};
-use crate::render::strands::{Fragment, Knot};
+use crate::render::strands::{Fragment, Knot, LOOKS, radiance_at};
 
 /// A tile of the picture.
 #[derive(Clone, Copy)]
@@ -205,22 +204,19 @@ impl Pass<'_> {
     }
 
     fn hair_face(&self, strands: &Strands, band: &Band, fragment: &Fragment) -> Face {
-        let at = fragment.knot as usize;
-        let (a, b) = (&band.looks[at], &band.looks[at + 1]);
-        let log = a.log_radiance.lerp(b.log_radiance, fragment.along);
-        let radiance = Vec3::new(exp(log.x), exp(log.y), exp(log.z));
+        let strand = fragment.strand as usize;
+        let radiance = radiance_at(&band.looks[strand * LOOKS..(strand + 1) * LOOKS], fragment.s);
         if self.settings.layers == Layers::Light {
             return Face { radiance, ..Face::default() };
         }
-        // Division of shorter numbers takes half the time.
-        let strand = fragment.knot / strands.points_per_strand as u32;
-        let piece = at - strand as usize * strands.points_per_strand;
-        let of_strand = strands.points_of_m(band.strands[strand as usize] as usize);
+        let strand = band.strands[strand] as usize;
+        let points_m = strands.points_of_m(strand);
+        let piece = ((fragment.s * (points_m.len() - 1) as f32) as usize).min(points_m.len() - 2);
         Face {
             z_m: fragment.z_m(),
             radiance,
-            albedo: a.albedo.lerp(b.albedo, fragment.along),
-            tangent: (of_strand[piece + 1] - of_strand[piece]).normalize_or_zero(),
+            albedo: strands.tint[strand] * strands.profile.ramp_at(fragment.s),
+            tangent: (points_m[piece + 1] - points_m[piece]).normalize_or_zero(),
             normal: Vec3::ZERO,
         }
     }
@@ -268,11 +264,11 @@ impl Brush<'_, '_> {
         let points = self.strands.points_per_strand as u32;
         let strand = piece / points;
         let id = self.strands.id[self.band.strands[strand as usize] as usize];
-        let stroke = Stroke { a, b, piece, first: (piece - strand * points) as f32, id };
+        let stroke = Stroke { a, b, strand, first: (piece - strand * points) as f32, id };
         let Some(narrow) = Narrow::new(a, b, self.window) else {
             ribbon::rasterise(a, b, self.window, |share| {
-                let (z_m, opacity) = self.along(&stroke, share.along);
-                self.touch(&stroke, &share, z_m, opacity);
+                let at = self.at(&stroke, share.along);
+                self.touch(&stroke, &share, at);
             });
             return;
         };
@@ -285,13 +281,13 @@ impl Brush<'_, '_> {
                 }
                 let (row, begin) = (first + lane as i32, found.begin[lane] as i32);
                 let (linear, along) = (found.linear.0[lane], found.along.0[lane]);
-                let (z_m, opacity) = self.along(&stroke, along);
+                let at = self.at(&stroke, along);
                 for k in 0..found.count[lane] as usize {
                     let coverage = found.coverage[k].0[lane];
                     if coverage > 0.0 {
                         let x = begin + k as i32;
                         let pixel = if narrow.flat { [row, x] } else { [x, row] };
-                        self.touch(&stroke, &Share { pixel, coverage, linear, along }, z_m, opacity);
+                        self.touch(&stroke, &Share { pixel, coverage, linear, along }, at);
                     }
                 }
             }
@@ -299,32 +295,42 @@ impl Brush<'_, '_> {
         }
     }
 
-    /// Depth and opacity along a piece.
+    /// What a hair is `along` a piece.
     #[inline(always)]
-    fn along(&self, stroke: &Stroke<'_>, along: f32) -> (f32, f32) {
-        let z_m = stroke.a.z_m + along * (stroke.b.z_m - stroke.a.z_m);
-        (z_m, self.pass.opacity.at((stroke.first + along) * self.pass.per_piece))
+    fn at(&self, stroke: &Stroke<'_>, along: f32) -> At {
+        let s = (stroke.first + along) * self.pass.per_piece;
+        At { z_m: stroke.a.z_m + along * (stroke.b.z_m - stroke.a.z_m), s, opacity: self.pass.opacity.at(s) }
     }
 
     /// Adds a fragment where it may be seen.
     #[inline(always)]
-    fn touch(&mut self, stroke: &Stroke<'_>, share: &Share, z_m: f32, opacity: f32) {
+    fn touch(&mut self, stroke: &Stroke<'_>, share: &Share, At { z_m, s, opacity }: At) {
         let (place, skin) = (self.place, self.place.skin);
         let at = place.at(share.pixel[0] as usize, share.pixel[1] as usize);
         if z_m <= self.guard.limit_m(at)
             && self.pass.before_skin(stroke.a, stroke.b, share, z_m, skin.z_m[at], skin.triangle[at])
         {
-            let Stroke { piece, id, .. } = *stroke;
-            self.guard.push(at, Fragment::new(z_m, id, [share.coverage, opacity], piece, share.along));
+            let Stroke { strand, id, .. } = *stroke;
+            self.guard.push(at, Fragment::new(z_m, id, [share.coverage, opacity], strand, s));
         }
     }
+}
+
+/// A place on a hair.
+#[derive(Clone, Copy)]
+struct At {
+    z_m: f32,
+    /// Along the hair, in [0, 1].
+    s: f32,
+    opacity: f32,
 }
 
 /// A piece of a strand.
 struct Stroke<'a> {
     a: &'a Knot,
     b: &'a Knot,
-    piece: u32,
+    /// The strand's number in the band.
+    strand: u32,
     /// Its number along the strand.
     first: f32,
     id: u32,

@@ -9,15 +9,24 @@ pub mod ribbon;
 pub mod shade;
 
 use crate::math::Vec3;
+use crate::math::fast::exp;
 
-/// What a guard hair sends towards the eye, at one of its points.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Look {
-    /// Logarithm of the opaque hair's radiance, linear RGB: shadow, and radiance with it, goes exponentially from point to
-    /// point.
-    pub log_radiance: Vec3,
-    /// Diffuse colour.
-    pub albedo: Vec3,
+/// How often a strand is lit: logarithms of the opaque hair's radiance, linear RGB. Shadow, and radiance with it, goes
+/// exponentially from one to the next.
+pub const LOOKS: usize = 8;
+
+/// Where along the hair, in [0, 1], look `i` is taken: closer to each other towards the tips, which are seen most.
+pub fn look_s(i: usize) -> f32 {
+    (i as f32 / (LOOKS - 1) as f32).sqrt()
+}
+
+/// Radiance at `s` in [0, 1] along a hair.
+#[inline(always)]
+pub fn radiance_at(looks: &[Vec3], s: f32) -> Vec3 {
+    let at = s * s * (LOOKS - 1) as f32;
+    let low = (at as usize).min(LOOKS - 2);
+    let log = looks[low].lerp(looks[low + 1], at - low as f32);
+    Vec3::new(exp(log.x), exp(log.y), exp(log.z))
 }
 
 /// A point of a strand on the picture.
@@ -42,17 +51,17 @@ pub struct Fragment {
     pub coverage: f32,
     /// The hair's own opacity there, in [0, 1].
     pub opacity: f32,
-    /// First knot of the piece.
-    pub knot: u32,
-    /// Where along the piece, in [0, 1].
-    pub along: f32,
+    /// Number of the hair among those that are drawn.
+    pub strand: u32,
+    /// Where along the hair, in [0, 1].
+    pub s: f32,
 }
 
 impl Fragment {
-    /// Of hair `id` at depth `z_m` > 0 along the optical axis, `along` the piece that begins at `knot`.
+    /// Of hair `id` at depth `z_m` > 0 along the optical axis, the `strand`th of those that are drawn, at `s` along it.
     #[inline(always)]
-    pub fn new(z_m: f32, id: u32, [coverage, opacity]: [f32; 2], knot: u32, along: f32) -> Self {
-        Self { order: u64::from(z_m.to_bits()) << 32 | u64::from(id), coverage, opacity, knot, along }
+    pub fn new(z_m: f32, id: u32, [coverage, opacity]: [f32; 2], strand: u32, s: f32) -> Self {
+        Self { order: u64::from(z_m.to_bits()) << 32 | u64::from(id), coverage, opacity, strand, s }
     }
 
     /// What it hides of the pixel.
@@ -73,9 +82,9 @@ impl Fragment {
         self.order as u32
     }
 
-    /// Sorts by depth, then id, then piece.
+    /// Sorts by depth, then id, then place along the hair.
     #[inline(always)]
     pub fn order(&self) -> (u64, u32) {
-        (self.order, self.knot)
+        (self.order, self.s.to_bits())
     }
 }

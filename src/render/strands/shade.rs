@@ -1,6 +1,6 @@
-//! Light on guard hair, at the points of its strands.
+//! Light on guard hair, at some places along each strand.
 
-use super::Look;
+use super::{LOOKS, look_s};
 use crate::data::strands::Strands;
 use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, Row, Vec3Row, Vec3s};
@@ -24,6 +24,17 @@ pub struct GuardShader<'a> {
     top_m: f32,
     /// Hair area above heights per skin area, by their share of `top_m`, where the fields are 1.
     above: Table,
+    /// Where looks are taken.
+    sites: Vec<LookSite>,
+}
+
+/// Where on a strand a look is taken.
+struct LookSite {
+    /// Along the strand, in [0, 1].
+    s: f32,
+    piece: usize,
+    /// Along the piece, in [0, 1].
+    along: f32,
 }
 
 impl<'a> GuardShader<'a> {
@@ -46,16 +57,23 @@ impl<'a> GuardShader<'a> {
         let layers = [pelt.guard.map(|(_, fibre)| layer(fibre)), pelt.undercoat.map(layer)];
         let top_m = layers.iter().flatten().map(|l| l.height_m + 5.0 * l.spread_m).fold(f32::MIN_POSITIVE, f32::max);
         let above = Table::new(|x| layers.iter().flatten().map(|layer| layer.above(x * top_m)).sum());
-        Ok(Self { pelt, strands, lighting, lobes, normals, mean, eye_m, albedo_share, top_m, above })
+        let last = (strands.points_per_strand - 1) as f32;
+        let site = |i: usize| {
+            let s = look_s(i);
+            let piece = ((s * last) as usize).min(strands.points_per_strand - 2);
+            LookSite { s, piece, along: s * last - piece as f32 }
+        };
+        let sites = (0..LOOKS).map(site).collect();
+        Ok(Self { pelt, strands, lighting, lobes, normals, mean, eye_m, albedo_share, top_m, above, sites })
     }
 
-    /// Appends the looks of some strands' points, root first.
-    pub fn strands(&self, strands: &[u32], out: &mut Vec<Look>) {
+    /// Appends the looks of some strands, root first.
+    pub fn strands(&self, strands: &[u32], out: &mut Vec<Vec3>) {
         lanes::run(Shade { shader: self, strands, out });
     }
 
     #[inline(always)]
-    fn strand<I: Isa>(&self, strand: usize, out: &mut Vec<Look>) {
+    fn strand<I: Isa>(&self, strand: usize, out: &mut Vec<Vec3>) {
         let (strands, pelt) = (self.strands, &self.pelt);
         let root = strands.roots[strand];
         let corners = pelt.skin.triangles[root.triangle as usize].map(|v| v as usize);
@@ -75,14 +93,17 @@ impl<'a> GuardShader<'a> {
         let mean = self.mean.filter(|_| lit);
         let points = strands.points_of_m(strand);
         let last = points.len() - 1;
-        for first in (0..points.len()).step_by(I::LANES) {
-            let count = I::LANES.min(points.len() - first);
+        let point = |i: usize| points[i.min(last)];
+        // The hair's direction turns evenly from point to point.
+        let turn = |i: usize| if i == 0 || i >= last { 2.0 } else { 1.0 };
+        let step = |i: usize| (point(i + 1) - point(i.saturating_sub(1))) * turn(i);
+        for first in (0..self.sites.len()).step_by(I::LANES) {
+            let count = I::LANES.min(self.sites.len() - first);
             let (mut at_m, mut along, mut s) = (Vec3Row::default(), Vec3Row::default(), Row::default());
-            for lane in 0..count {
-                let i = first + lane;
-                at_m.set(lane, points[i]);
-                along.set(lane, points[(i + 1).min(last)] - points[i.saturating_sub(1)]);
-                s.0[lane] = i as f32 / last as f32;
+            for (lane, site) in self.sites[first..first + count].iter().enumerate() {
+                at_m.set(lane, point(site.piece).lerp(point(site.piece + 1), site.along));
+                along.set(lane, step(site.piece).lerp(step(site.piece + 1), site.along));
+                s.0[lane] = site.s;
             }
             let at_m = Vec3s::<I>::of(&at_m);
             let height_m = (at_m - Vec3s::splat(points[0])).dot(Vec3s::splat(normal));
@@ -104,11 +125,10 @@ impl<'a> GuardShader<'a> {
                 }),
             };
             let Vec3s { x, y, z } = self.radiance(&spot);
-            let (log_radiance, albedo) = (Vec3s::new(log(x), log(y), log(z)).rows(), spot.albedo.rows());
-            let look = |lane| Look { log_radiance: log_radiance.lane(lane), albedo: albedo.lane(lane) };
-            out.extend((0..count).map(look));
+            let log_radiance = Vec3s::new(log(x), log(y), log(z)).rows();
+            out.extend((0..count).map(|lane| log_radiance.lane(lane)));
         }
-        let begin = out.len() - points.len();
+        let begin = out.len() - self.sites.len();
         settle(&mut out[begin..]);
     }
 
@@ -149,18 +169,18 @@ const MOST_BEND: Vec3 = Vec3::splat(0.25);
 
 /// Moves points so that straight lines between them keep to the curve in the mean rather than at its points: they stray from
 /// it by a twelfth of its second difference.
-fn settle(looks: &mut [Look]) {
+fn settle(looks: &mut [Vec3]) {
     let [first, second, third, ..] = looks else { return };
     let bend = |a: Vec3, b: Vec3, c: Vec3| ((a - b - b + c) / 12.0).clamp(-MOST_BEND, MOST_BEND);
-    let mut last_bend = bend(first.log_radiance, second.log_radiance, third.log_radiance);
-    let mut before = first.log_radiance;
-    first.log_radiance -= last_bend;
+    let mut last_bend = bend(*first, *second, *third);
+    let mut before = *first;
+    *first -= last_bend;
     for i in 1..looks.len() {
-        let here = looks[i].log_radiance;
+        let here = looks[i];
         if let Some(next) = looks.get(i + 1) {
-            last_bend = bend(before, here, next.log_radiance);
+            last_bend = bend(before, here, *next);
         }
-        looks[i].log_radiance -= last_bend;
+        looks[i] -= last_bend;
         before = here;
     }
 }
@@ -175,7 +195,7 @@ fn log<I: Isa>(radiance: F32s<I>) -> F32s<I> {
 struct Shade<'a, 'o> {
     shader: &'a GuardShader<'a>,
     strands: &'a [u32],
-    out: &'o mut Vec<Look>,
+    out: &'o mut Vec<Vec3>,
 }
 
 impl lanes::Work for Shade<'_, '_> {
