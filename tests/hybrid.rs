@@ -19,6 +19,8 @@ const SETTINGS: Settings = Settings {
         shadow_coarser: 2,
         pattern: None,
     },
+    hair_px: 0.0,
+    opaque: 1e-3,
     band_bytes: 256 << 20,
     layers: Layers::All,
 };

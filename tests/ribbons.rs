@@ -105,16 +105,16 @@ fn a_hair_thinner_than_a_pixel_covers_its_share() {
 fn a_thousand_fragments_at_one_depth_are_ordered_by_id() {
     let mut random = Stream::new(5);
     let mut fragments: Vec<Fragment> =
-        (0..1000).map(|id| Fragment::new(if id < 500 { 1.0 } else { 2.0 }, id, [0.002, 1.0], id, 0.5)).collect();
+        (0..1000).map(|id| Fragment::new(if id < 500 { 1.0 } else { 2.0 }, id, [0.002, 1.0], id, 0)).collect();
     let draw = |fragments: &[Fragment]| {
-        composite(Layers::All, fragments, &[], Blending::Virtual { fragments: 1 }, None, |f| {
+        composite(Layers::All, fragments, &[], Blending::Virtual { fragments: 1 }, 0.001, None, |f| {
             let radiance = Vec3::splat(f.id() as f32 * 1e-3);
             furrier::render::resolve::Face { z_m: f.z_m(), radiance, ..Default::default() }
         })
     };
     let mut veil = [0.0; 1000];
     let mut settled = |fragments: &mut [Fragment]| {
-        let count = settle(fragments, &mut veil);
+        let count = settle(fragments, &mut veil, 0.0005);
         draw(&fragments[..count])
     };
     let first = settled(&mut fragments);

@@ -7,8 +7,6 @@
 #import furrier::stretch::{Stretch, unpack_albedo, unpack_tangent}
 #import furrier::skin_look::skin_look
 
-// Transmittance below which nothing behind can be seen.
-const OPAQUE: f32 = 1e-3;
 const NO_STRETCH: u32 = 0xffffffffu;
 
 // Equation (4) in place of virtual fragments.
@@ -106,6 +104,19 @@ fn add_skin(front: ptr<function, Front>, at: u32, middle: vec2<f32>) {
     (*front).through = 0.0;
 }
 
+// Lets what is in front stand for what little is seen through it.
+fn fill(front: ptr<function, Front>) {
+    let scale = 1.0 / (1.0 - (*front).through);
+    (*front).radiance *= scale;
+    (*front).albedo *= scale;
+    (*front).tangent *= scale;
+    (*front).normal *= scale;
+    (*front).z_m *= scale;
+    (*front).guard *= scale;
+    (*front).undercoat *= scale;
+    (*front).through = 0.0;
+}
+
 @compute @workgroup_size(64)
 fn composite(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -121,9 +132,9 @@ fn composite(
     var reader = read_from(at);
     var fragment = next_fragment(&reader);
     var index = heads[at];
-    while index != NO_STRETCH && front.through >= OPAQUE {
+    while index != NO_STRETCH && front.through >= scene.opaque {
         let stretch = stretches[index];
-        while fragment.real && fragment.z_m <= stretch.from_m && front.through >= OPAQUE {
+        while fragment.real && fragment.z_m <= stretch.from_m && front.through >= scene.opaque {
             add_hair(&front, fragment);
             fragment = next_fragment(&reader);
         }
@@ -132,7 +143,7 @@ fn composite(
             var unoccluded = 1.0;
             var ahead = reader;
             var behind = fragment;
-            while behind.real && unoccluded >= OPAQUE && alpha > 0.0 {
+            while behind.real && unoccluded >= scene.opaque && alpha > 0.0 {
                 // Weighted by the fragment's own opacity, so that a hair's thinner share of a pixel takes less.
                 let own = opacity_of(behind) * unoccluded;
                 alpha -= own * exp(-scene.attenuation_per_m * (behind.z_m - stretch.from_m));
@@ -142,7 +153,7 @@ fn composite(
             add_undercoat(&front, stretch, max(alpha, 0.0), stretch.from_m);
         } else {
             var from_m = stretch.from_m;
-            while fragment.real && fragment.z_m < stretch.to_m && front.through >= OPAQUE {
+            while fragment.real && fragment.z_m < stretch.to_m && front.through >= scene.opaque {
                 let to_m = max(fragment.z_m, from_m);
                 add_part(&front, stretch, from_m, to_m);
                 add_hair(&front, fragment);
@@ -155,14 +166,15 @@ fn composite(
         }
         index = stretch.next;
     }
-    while fragment.real && front.through >= OPAQUE {
+    while fragment.real && front.through >= scene.opaque {
         add_hair(&front, fragment);
         fragment = next_fragment(&reader);
     }
     let middle = vec2<f32>(pixel_of(at)) + 0.5;
-    add_skin(&front, at, middle);
-    if front.through < OPAQUE {
-        front.through = 0.0;
+    if front.through < scene.opaque {
+        fill(&front);
+    } else {
+        add_skin(&front, at, middle);
     }
 
     let count = pixel_count();

@@ -8,8 +8,6 @@
 #import furrier::stretch::{Stretch, pack_faces}
 #import furrier::undercoat_look::undercoat_look
 
-// Transmittance below which nothing behind can be seen.
-const OPAQUE: f32 = 1e-3;
 // How much deeper a ray's last steps may be than its first.
 const MOST_PATIENCE: f32 = 4.0;
 const NO_STRETCH: u32 = 0xffffffffu;
@@ -149,7 +147,7 @@ fn march_pixel(at: u32) -> u32 {
         var through = 1.0;
         var group = Gathered(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0);
         var end_m = 0.0;
-        for (var s = 0u; s < MOST_STEPS && walk.alive && through > OPAQUE; s++) {
+        for (var s = 0u; s < MOST_STEPS && walk.alive && through > scene.opaque; s++) {
             // A step's error grows as the square of its depth, and counts as what is left of the ray.
             let step_depth = scene.step_depth * min(inverseSqrt(through), MOST_PATIENCE);
             let taken = advance(&walk, view.eye_m, direction, far_m, Stepping(step_depth, scene.step_layers));
@@ -178,7 +176,7 @@ fn march_pixel(at: u32) -> u32 {
             through = left;
         }
         put(&chain, group, z_per_m);
-        if through <= OPAQUE {
+        if through <= scene.opaque {
             opaque_here_m = min(opaque_here_m, end_m * z_per_m);
         }
     }

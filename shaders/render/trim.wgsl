@@ -12,8 +12,6 @@
 const SHORT: u32 = 48u;
 // Slices of depth.
 const SLICES: u32 = 32u;
-// Optical depth behind which nothing is seen: -ln of a tenth of what compositing takes for opaque.
-const HIDDEN: f32 = 9.21;
 
 @compute @workgroup_size(64)
 fn trim(
@@ -44,9 +42,11 @@ fn trim(
         let slice = min(u32((fragment_z[slot] - nearest) * per_m), SLICES - 1u);
         depths[slice] -= log(max(1.0 - opacity, 1e-6));
     }
+    // Optical depth behind which nothing is seen: of a tenth of what compositing takes for opaque.
+    let hidden = -log(0.1 * scene.opaque);
     var sum = 0.0;
     var last = 0u;
-    while last < SLICES - 1u && sum + depths[last] < HIDDEN {
+    while last < SLICES - 1u && sum + depths[last] < hidden {
         sum += depths[last];
         last++;
     }

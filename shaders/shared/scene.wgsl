@@ -85,7 +85,8 @@ struct Scene {
     guard_diffuse: f32,
     // Attenuation of simplified blending, 1/m.
     attenuation_per_m: f32,
-    unused: f32,
+    // Transmittance below which what is seen already stands for what is behind it.
+    opaque: f32,
     // R, TT, TRT.
     lobes: array<Lobe, 3>,
 }

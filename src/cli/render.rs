@@ -302,7 +302,7 @@ impl Render {
     fn settings_of(&self, size: [usize; 2]) -> Settings {
         let mut settings = match self.quality {
             Quality::Final => Settings::best(size),
-            Quality::Preview | Quality::Reference => Settings { size, ..Settings::default() },
+            Quality::Preview | Quality::Reference => Settings::preview(size),
         };
         if let Some(attenuation_per_m) = self.simplified {
             settings.blending = Blending::Simplified { attenuation_per_m };

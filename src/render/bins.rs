@@ -60,6 +60,13 @@ impl Grid {
     }
 }
 
+/// Takes the first `count` off a slice.
+fn cut<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    let (first, others) = std::mem::take(rest).split_at_mut(count);
+    *rest = others;
+    first
+}
+
 /// Items by tile.
 #[derive(Clone, Debug, Default)]
 pub struct Bins {
@@ -70,33 +77,51 @@ pub struct Bins {
 impl Bins {
     /// Sorts the items 0 … count−1 into the tiles of `grid` that `reach` of each touches, in their order.
     pub fn new(grid: &Grid, count: usize, reach: impl Fn(usize) -> Reach + Sync) -> Self {
-        const CHUNK: usize = 4096;
-        let chunks: Vec<Vec<(u32, u32)>> = (0..count.div_ceil(CHUNK))
+        // By chunk of items and row of tiles: columns and items.
+        const CHUNK: usize = 1 << 15;
+        let chunks: Vec<Vec<Vec<(u32, u32)>>> = (0..count.div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
-                let mut pairs = Vec::new();
+                let mut by_row = vec![Vec::new(); grid.rows];
                 for item in chunk * CHUNK..((chunk + 1) * CHUNK).min(count) {
                     let (columns, rows) = grid.touched(&reach(item));
-                    for row in rows {
-                        pairs.extend(columns.clone().map(|column| ((row * grid.columns + column) as u32, item as u32)));
+                    for pairs in &mut by_row[rows] {
+                        pairs.extend(columns.clone().map(|column| (column as u32, item as u32)));
                     }
                 }
-                pairs
+                by_row
+            })
+            .collect();
+        let of_row = |row: usize| chunks.iter().flat_map(move |by_row| &by_row[row]);
+        let ends: Vec<u32> = (0..grid.rows)
+            .scan(0, |end, row| {
+                *end += chunks.iter().map(|by_row| by_row[row].len() as u32).sum::<u32>();
+                Some(*end)
             })
             .collect();
         let mut starts = vec![0_u32; grid.columns * grid.rows + 1];
-        for &(tile, _) in chunks.iter().flatten() {
-            starts[tile as usize + 1] += 1;
-        }
-        for i in 1..starts.len() {
-            starts[i] += starts[i - 1];
-        }
-        let mut next = starts.clone();
-        let mut items = vec![0; starts[starts.len() - 1] as usize];
-        for (tile, item) in chunks.into_iter().flatten() {
-            items[next[tile as usize] as usize] = item;
-            next[tile as usize] += 1;
-        }
+        let mut items = vec![0; ends.last().map_or(0, |&end| end as usize)];
+        let (mut starts_left, mut items_left) = (&mut starts[1..], &mut items[..]);
+        let rows: Vec<_> = (0..grid.rows)
+            .map(|row| {
+                let begin = if row == 0 { 0 } else { ends[row - 1] };
+                (row, begin, cut(&mut starts_left, grid.columns), cut(&mut items_left, (ends[row] - begin) as usize))
+            })
+            .collect();
+        rows.into_par_iter().for_each(|(row, begin, ends, items)| {
+            let mut next = vec![0_u32; grid.columns];
+            of_row(row).for_each(|&(column, _)| next[column as usize] += 1);
+            let mut at = 0;
+            for (next, end) in next.iter_mut().zip(ends) {
+                (*next, at) = (at, at + *next);
+                *end = begin + at;
+            }
+            for &(column, item) in of_row(row) {
+                let next = &mut next[column as usize];
+                items[*next as usize] = item;
+                *next += 1;
+            }
+        });
         Self { starts, items }
     }
 

@@ -5,11 +5,8 @@ use crate::data::film::Layers;
 use crate::math::Vec3;
 use crate::math::fast::exp_negative;
 
-/// Transmittance below which nothing behind can be seen.
-pub const OPAQUE: f32 = 1e-3;
-
-/// Transmittance of fragments behind which further ones are left out, with room for rounding against [`OPAQUE`].
-pub const HIDDEN: f32 = 0.5 * OPAQUE;
+/// Transmittance of fragments behind which further ones are left out, over that which counts as opaque: room for rounding.
+pub const HIDDEN: f32 = 0.5;
 
 /// How undercoat and guard hair are put into one order.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,6 +110,19 @@ impl<const ALL: bool> Front<ALL> {
         }
     }
 
+    /// Lets what is in front stand for what little is seen through it.
+    fn fill(&mut self) {
+        let scale = 1.0 / (1.0 - self.through);
+        let pixel = &mut self.pixel;
+        for value in [&mut pixel.radiance, &mut pixel.albedo, &mut pixel.tangent, &mut pixel.normal] {
+            *value *= scale;
+        }
+        for value in [&mut pixel.z_m, &mut pixel.guard, &mut pixel.undercoat] {
+            *value *= scale;
+        }
+        self.through = 0.0;
+    }
+
     /// The part of a stretch between two depths.
     fn add_part(&mut self, stretch: &Stretch, from_m: f32, to_m: f32) {
         let extent = stretch.to_m - stretch.from_m;
@@ -130,10 +140,10 @@ impl<const ALL: bool> Front<ALL> {
 }
 
 /// Orders a pixel's fragments by (depth, id), joins neighbouring pieces of one hair, since together they cover it once,
-/// and leaves out what lies behind an opaque front: it could not be seen whatever else comes before it.
+/// and leaves out what lies behind a front of transmittance `hidden`: it could not be seen whatever else comes before it.
 ///
 /// Returns how many are left. `veil` receives the transmittance up to and with each of them.
-pub fn settle(fragments: &mut [Fragment], veil: &mut [f32]) -> usize {
+pub fn settle(fragments: &mut [Fragment], veil: &mut [f32], hidden: f32) -> usize {
     sort(fragments);
     let (mut count, mut before, mut through) = (0, 1.0, 1.0);
     for i in 0..fragments.len() {
@@ -142,7 +152,7 @@ pub fn settle(fragments: &mut [Fragment], veil: &mut [f32]) -> usize {
             let coverage = &mut fragments[count - 1].coverage;
             *coverage = (*coverage + fragment.coverage).min(1.0);
         } else {
-            if through < HIDDEN {
+            if through < hidden {
                 break;
             }
             fragments[count] = fragment;
@@ -174,18 +184,20 @@ fn sort(fragments: &mut [Fragment]) {
 }
 
 /// Composites front to back. `fragments` are ordered by [`settle`], `stretches` by where they begin; `face` says what a
-/// fragment's hair looks like; `skin` lies behind all. [`Layers::Light`] leaves out what it does not hold.
+/// fragment's hair looks like; `skin` lies behind all. Behind a front that lets through less than `opaque` nothing is looked at:
+/// the front stands for it. [`Layers::Light`] leaves out what it does not hold.
 pub fn composite(
     layers: Layers,
     fragments: &[Fragment],
     stretches: &[Stretch],
     blending: Blending,
+    opaque: f32,
     skin: Option<&Face>,
     face: impl Fn(&Fragment) -> Face,
 ) -> Pixel {
     match layers {
-        Layers::Light => blend::<false>(fragments, stretches, blending, skin, face),
-        Layers::LightAndDepth | Layers::All => blend::<true>(fragments, stretches, blending, skin, face),
+        Layers::Light => blend::<false>(fragments, stretches, blending, opaque, skin, face),
+        Layers::LightAndDepth | Layers::All => blend::<true>(fragments, stretches, blending, opaque, skin, face),
     }
 }
 
@@ -194,6 +206,7 @@ fn blend<const ALL: bool>(
     fragments: &[Fragment],
     stretches: &[Stretch],
     blending: Blending,
+    opaque: f32,
     skin: Option<&Face>,
     face: impl Fn(&Fragment) -> Face,
 ) -> Pixel {
@@ -203,17 +216,17 @@ fn blend<const ALL: bool>(
         front.add(fragment.alpha(), &face(fragment), Kind::Guard);
     };
     for stretch in stretches {
-        if front.through < OPAQUE {
+        if front.through < opaque {
             break;
         }
-        while next < fragments.len() && fragments[next].z_m() <= stretch.from_m && front.through >= OPAQUE {
+        while next < fragments.len() && fragments[next].z_m() <= stretch.from_m && front.through >= opaque {
             hair(&mut front, &fragments[next]);
             next += 1;
         }
         match blending {
             Blending::Virtual { .. } => {
                 let mut from_m = stretch.from_m;
-                while next < fragments.len() && fragments[next].z_m() < stretch.to_m && front.through >= OPAQUE {
+                while next < fragments.len() && fragments[next].z_m() < stretch.to_m && front.through >= opaque {
                     let to_m = fragments[next].z_m().max(from_m);
                     front.add_part(stretch, from_m, to_m);
                     hair(&mut front, &fragments[next]);
@@ -228,7 +241,7 @@ fn blend<const ALL: bool>(
                 let mut alpha = 1.0 - exp_negative(-stretch.depth);
                 let mut unoccluded = 1.0;
                 for fragment in &fragments[next..] {
-                    if unoccluded < OPAQUE || alpha <= 0.0 {
+                    if unoccluded < opaque || alpha <= 0.0 {
                         break;
                     }
                     // Weighted by the fragment's own opacity, so that a hair's thinner share of a pixel takes less.
@@ -248,16 +261,15 @@ fn blend<const ALL: bool>(
         }
     }
     for fragment in &fragments[next..] {
-        if front.through < OPAQUE {
+        if front.through < opaque {
             break;
         }
         hair(&mut front, fragment);
     }
-    if let Some(skin) = skin {
+    if front.through < opaque {
+        front.fill();
+    } else if let Some(skin) = skin {
         front.add(1.0, skin, Kind::Skin);
-    }
-    if front.through < OPAQUE {
-        front.through = 0.0;
     }
     front.pixel.alpha = 1.0 - front.through;
     front.pixel

@@ -65,13 +65,14 @@ struct Way {
 type Change = fn(&mut Settings, f64);
 
 /// Every control of the renderer and the values it is tried at.
-const CONTROLS: [(&str, &[f64], Change); 7] = [
+const CONTROLS: [(&str, &[f64], Change); 8] = [
     ("optical depth of a step", &[0.05, 0.1, 0.5, 1.0, 2.0], |s, v| s.stepping.depth = v as f32),
     ("length of a step, layers", &[0.5, 1.0, 4.0, 8.0], |s, v| s.stepping.layers = v as f32),
     ("most subdivisions d", &[0.0, 2.0, 4.0, 5.0, 6.0, 8.0], |s, v| s.resolution.most_subdivisions = v as u32),
     ("edge of a sub-element, px", &[0.75, 3.0, 6.0, 12.0], |s, v| s.resolution.subelement_px = v as f32),
     ("layers", &[4.0, 8.0, 32.0, 64.0], |s, v| s.resolution.layers = v as u32),
     ("virtual fragments", &[1.0, 4.0, 8.0, 16.0, 30.0], |s, v| s.blending = Blending::Virtual { fragments: v as u32 }),
+    ("least width of hair, px", &[0.0, 0.25, 0.35, 0.5, 0.7, 1.0, 1.4], |s, v| s.hair_px = v as f32),
     ("supersampling", &[1.0, 2.0, 4.0, 8.0], |s, v| s.passes = v as usize),
 ];
 
@@ -146,7 +147,7 @@ fn finest(size: [usize; 2]) -> Settings {
 
 /// The defaults, then each with one control changed at a time.
 fn ways(size: [usize; 2]) -> Vec<Way> {
-    let defaults = [("preview", Settings { size, ..Settings::default() }), ("final", Settings::best(size))];
+    let defaults = [("preview", Settings::preview(size)), ("final", Settings::best(size))];
     let whole = |(name, settings): &(&'static str, Settings)| Way {
         sweep: (*name).to_owned(),
         value: 0.0,

@@ -33,6 +33,69 @@ pub fn to_centres_in_space(root_m: Vec3, spacing_m: f32, seed: u64) -> [Vec3; 27
     Nearby::default().to_centres(root_m, spacing_m, seed)
 }
 
+/// The clump centres around some triangle, for points on it.
+#[derive(Clone, Debug)]
+pub struct Around {
+    /// First cell and how many there are along each axis.
+    first: Vec3,
+    count: [usize; 3],
+    centres_m: Vec<Vec3>,
+    spacing_m: f32,
+    seed: u64,
+}
+
+impl Around {
+    /// More centres are not kept.
+    const MOST: usize = 1024;
+
+    /// Centres around the triangle between `corners_m`; none are kept where there are too many.
+    pub fn new(corners_m: &[Vec3; 3], spacing_m: f32, seed: u64) -> Self {
+        let [a, b, c] = corners_m;
+        let first = (a.min(*b).min(*c) / spacing_m).floor() - 1.0;
+        let last = (a.max(*b).max(*c) / spacing_m).floor() + 1.0;
+        let cells = last - first + 1.0;
+        let mut around = Self { first, count: [0; 3], centres_m: Vec::new(), spacing_m, seed };
+        if cells.x * cells.y * cells.z <= Self::MOST as f32 {
+            around.count = cells.to_array().map(|n| n as usize);
+            let [x, y, z] = around.count;
+            around.centres_m.extend((0..x * y * z).map(|i| {
+                let cell = first + Vec3::new((i % x) as f32, (i / x % y) as f32, (i / (x * y)) as f32);
+                centre_m(cell, spacing_m, seed)
+            }));
+        }
+        around
+    }
+
+    /// As [`to_centre_in_space`].
+    pub fn to_centre(&self, root_m: Vec3) -> Vec3 {
+        let at = (root_m / self.spacing_m).floor() - self.first;
+        let [x, y, z] = at.to_array().map(|v| v as usize);
+        let within = |at: f32, count: usize| at >= 1.0 && at as usize + 1 < count;
+        if !(within(at.x, self.count[0]) && within(at.y, self.count[1]) && within(at.z, self.count[2])) {
+            return to_centre_in_space(root_m, self.spacing_m, self.seed);
+        }
+        let mut nearest = Vec3::INFINITY;
+        for z in z - 1..=z + 1 {
+            for y in y - 1..=y + 1 {
+                let row = (z * self.count[1] + y) * self.count[0] + x - 1;
+                for centre in &self.centres_m[row..row + 3] {
+                    let to_centre = *centre - root_m;
+                    if to_centre.length_squared() < nearest.length_squared() {
+                        nearest = to_centre;
+                    }
+                }
+            }
+        }
+        nearest
+    }
+}
+
+fn centre_m(cell: Vec3, spacing_m: f32, seed: u64) -> Vec3 {
+    let key = cell.to_array().iter().fold(seed, |key, &c| combine(key, c as i64 as u64));
+    let offset = Vec3::new(unit_f32(key), unit_f32(combine(key, 1)), unit_f32(combine(key, 2)));
+    (cell + offset) * spacing_m
+}
+
 /// The clump centres around a cell, kept for the next point that lies in it.
 #[derive(Clone, Copy, Debug)]
 pub struct Nearby {
@@ -59,9 +122,7 @@ impl Nearby {
             self.home = home;
             self.centres_m = std::array::from_fn(|i| {
                 let cell = home + Vec3::new((i % 3) as f32 - 1.0, (i / 3 % 3) as f32 - 1.0, (i / 9) as f32 - 1.0);
-                let key = cell.to_array().iter().fold(seed, |key, &c| combine(key, c as i64 as u64));
-                let offset = Vec3::new(unit_f32(key), unit_f32(combine(key, 1)), unit_f32(combine(key, 2)));
-                (cell + offset) * spacing_m
+                centre_m(cell, spacing_m, seed)
             });
         }
         &self.centres_m

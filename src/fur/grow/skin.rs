@@ -7,7 +7,7 @@ use crate::data::strands::{Root, Strands};
 use crate::fur::groom::clump;
 use crate::fur::groom::fibre::Fibre;
 use crate::math::hash::{combine, unit_f32};
-use crate::math::{Vec2, Vec3, orthonormal_basis, sampling};
+use crate::math::{Mat3, Vec2, Vec3, orthonormal_basis, sampling};
 use rayon::prelude::*;
 
 /// Grows one kind of hair on the whole mesh.
@@ -22,56 +22,148 @@ pub fn grow(fibre: &Fibre, mesh: &Mesh, fields: &Fields, seed: u64) -> Strands {
 /// The hair of `triangles` alone, as [`grow`] would grow it.
 pub fn grow_on(fibre: &Fibre, mesh: &Mesh, fields: &Fields, seed: u64, triangles: &[usize]) -> Strands {
     let normals = mesh.smooth_normals();
-    let per_triangle: Vec<Strands> = triangles
-        .par_iter()
-        .map(|&t| grow_triangle(fibre, mesh, &normals, fields, t, combine(seed, t as u64)))
+    let field = Field { fibre, mesh, normals: &normals, fields, seed };
+    let groups = || triangles.par_chunks(GROUP);
+    let counts: Vec<usize> = groups().map(|group| group.iter().map(|&t| field.roots(t).count()).sum()).collect();
+    let mut all = empty(fibre, 0);
+    let count: usize = counts.iter().sum();
+    all.points_m = bytemuck::zeroed_vec(count * all.points_per_strand);
+    all.tint = bytemuck::zeroed_vec(count);
+    all.roots = vec![Root::default(); count];
+    all.root_radius_m = vec![fibre.radius_m; count];
+    all.id = (0..count as u32).collect();
+    let (mut points_m, mut tint, mut roots) = (&mut all.points_m[..], &mut all.tint[..], &mut all.roots[..]);
+    let plots: Vec<Plot<'_>> = counts
+        .iter()
+        .map(|&count| Plot {
+            points_m: cut(&mut points_m, count * all.points_per_strand),
+            tint: cut(&mut tint, count),
+            roots: cut(&mut roots, count),
+        })
         .collect();
-    let mut all = empty(fibre, per_triangle.iter().map(Strands::len).sum());
-    for part in per_triangle {
-        all.points_m.extend(part.points_m);
-        all.roots.extend(part.roots);
-        all.root_radius_m.extend(part.root_radius_m);
-        all.tint.extend(part.tint);
-    }
-    all.id = (0..all.len() as u32).collect();
+    groups().zip(plots).for_each(|(group, plot)| field.grow(group, plot, all.points_per_strand));
     all
 }
 
-fn grow_triangle(fibre: &Fibre, mesh: &Mesh, normals: &[Vec3], fields: &Fields, t: usize, key: u64) -> Strands {
-    let corners = mesh.triangles[t].map(|v| v as usize);
-    let greatest = corners.iter().map(|&v| fields.density[v]).fold(0.0, f32::max);
-    let expected = fibre.density_per_m2 * mesh.rest_area_m2(t) * greatest;
-    let count = (expected + unit_f32(key)).floor() as u64;
-    let mut strands = empty(fibre, count as usize);
-    let mut points = vec![Vec3::ZERO; strands.points_per_strand];
-    let posed_from_rest = mesh.posed_from_rest(t);
-    for i in 0..count {
-        let key = combine(key, i);
-        let b = sampling::square_to_triangle(sampling::r2(i, key & !0xFFFF));
-        let mix3 = |values: [Vec3; 3]| values[0] * b.x + values[1] * b.y + values[2] * b.z;
-        let mix1 = |values: [f32; 3]| values[0] * b.x + values[1] * b.y + values[2] * b.z;
-        let length = mix1(corners.map(|v| fields.length[v]));
-        if unit_f32(combine(key, 2)) * greatest >= mix1(corners.map(|v| fields.density[v])) || length <= 0.0 {
-            continue;
-        }
-        let root = mix3(mesh.corners_m(t));
-        let normal = mix3(corners.map(|v| normals[v])).normalize_or(Vec3::Z);
-        let lean = mix3(corners.map(|v| fields.lean[v])).normalize_or(normal);
-        let x_axis = tangent(mix3(corners.map(|v| fields.direction[v])), normal);
-        let y_axis = normal.cross(x_axis);
-        let rest_root = mix3(mesh.rest_corners_m(t));
-        let to_clump = clump::to_centre_in_space(rest_root, fibre.shape.clump.spacing_mm * 1e-3, 0);
-        let to_clump = posed_from_rest * to_clump;
-        let to_clump = Vec2::new(to_clump.dot(x_axis), to_clump.dot(y_axis));
-        let (length_m, brightness) = individual(fibre, fibre.length_m * length, key);
-        course(fibre, length_m, mix1(corners.map(|v| fields.clump[v])), to_clump, key, &mut points);
-        // Shell space to the world: sheared along the lean, as the coat's offsets shear a tile.
-        strands.points_m.extend(points.iter().map(|p| root + x_axis * p.x + y_axis * p.y + lean * p.z));
-        strands.roots.push(Root { triangle: t as u32, barycentric: [b.x, b.y] });
-        strands.root_radius_m.push(fibre.radius_m);
-        strands.tint.push(mix3(corners.map(|v| fields.tint[v])) * brightness);
+/// Triangles that one thread grows hair on at a time.
+const GROUP: usize = 32;
+
+/// Takes the first `count` off a slice.
+fn cut<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    let (first, others) = std::mem::take(rest).split_at_mut(count);
+    *rest = others;
+    first
+}
+
+/// Room for the hairs of a group of triangles.
+struct Plot<'a> {
+    points_m: &'a mut [Vec3],
+    tint: &'a mut [Vec3],
+    roots: &'a mut [Root],
+}
+
+/// What hair grows on.
+struct Field<'a> {
+    fibre: &'a Fibre,
+    mesh: &'a Mesh,
+    normals: &'a [Vec3],
+    fields: &'a Fields,
+    seed: u64,
+}
+
+impl Field<'_> {
+    /// Where hairs grow on a triangle, and their keys.
+    fn roots(&self, t: usize) -> impl Iterator<Item = (Vec3, u64)> {
+        let key = combine(self.seed, t as u64);
+        let corners = self.mesh.triangles[t].map(|v| v as usize);
+        let (density, length) =
+            (corners.map(|v| self.fields.density[v]), corners.map(|v| self.fields.length[v]));
+        let greatest = density.into_iter().fold(0.0, f32::max);
+        let expected = self.fibre.density_per_m2 * self.mesh.rest_area_m2(t) * greatest;
+        let count = (expected + unit_f32(key)).floor() as u64;
+        (0..count).filter_map(move |i| {
+            let key = combine(key, i);
+            let b = sampling::square_to_triangle(sampling::r2(i, key & !0xFFFF));
+            let gone = unit_f32(combine(key, 2)) * greatest >= mix1(density, b) || mix1(length, b) <= 0.0;
+            (!gone).then_some((b, key))
+        })
     }
-    strands
+
+    fn grow(&self, group: &[usize], plot: Plot<'_>, points_per_strand: usize) {
+        let roots = group.iter().flat_map(|&t| self.roots(t).map(move |root| (t, root)));
+        let mut ground: Option<Ground> = None;
+        let room = plot.points_m.chunks_exact_mut(points_per_strand).zip(plot.tint).zip(plot.roots);
+        for ((t, (b, key)), ((points_m, tint), root)) in roots.zip(room) {
+            let here = match &ground {
+                Some(ground) if ground.t == t => ground,
+                _ => ground.insert(Ground::new(self, t)),
+            };
+            *root = Root { triangle: t as u32, barycentric: [b.x, b.y] };
+            *tint = here.hair(self.fibre, b, key, points_m);
+        }
+    }
+}
+
+/// A triangle of the skin.
+struct Ground {
+    t: usize,
+    corners_m: [Vec3; 3],
+    rest_m: [Vec3; 3],
+    normals: [Vec3; 3],
+    lean: [Vec3; 3],
+    direction: [Vec3; 3],
+    tint: [Vec3; 3],
+    length: [f32; 3],
+    clump: [f32; 3],
+    posed_from_rest: Mat3,
+    centres: clump::Around,
+}
+
+impl Ground {
+    fn new(field: &Field<'_>, t: usize) -> Self {
+        let Field { fibre, mesh, normals, fields, .. } = *field;
+        let corners = mesh.triangles[t].map(|v| v as usize);
+        let rest_m = mesh.rest_corners_m(t);
+        Self {
+            t,
+            corners_m: mesh.corners_m(t),
+            rest_m,
+            normals: corners.map(|v| normals[v]),
+            lean: corners.map(|v| fields.lean[v]),
+            direction: corners.map(|v| fields.direction[v]),
+            tint: corners.map(|v| fields.tint[v]),
+            length: corners.map(|v| fields.length[v]),
+            clump: corners.map(|v| fields.clump[v]),
+            posed_from_rest: mesh.posed_from_rest(t),
+            centres: clump::Around::new(&rest_m, fibre.shape.clump.spacing_mm * 1e-3, 0),
+        }
+    }
+
+    /// Grows a hair; returns its colour.
+    fn hair(&self, fibre: &Fibre, b: Vec3, key: u64, points_m: &mut [Vec3]) -> Vec3 {
+        let root_m = mix3(self.corners_m, b);
+        let normal = mix3(self.normals, b).normalize_or(Vec3::Z);
+        let lean = mix3(self.lean, b).normalize_or(normal);
+        let x_axis = tangent(mix3(self.direction, b), normal);
+        let y_axis = normal.cross(x_axis);
+        let to_clump = self.posed_from_rest * self.centres.to_centre(mix3(self.rest_m, b));
+        let to_clump = Vec2::new(to_clump.dot(x_axis), to_clump.dot(y_axis));
+        let (length_m, brightness) = individual(fibre, fibre.length_m * mix1(self.length, b), key);
+        course(fibre, length_m, mix1(self.clump, b), to_clump, key, points_m);
+        // Shell space to the world: sheared along the lean, as the coat's offsets shear a tile.
+        for p in points_m {
+            *p = root_m + x_axis * p.x + y_axis * p.y + lean * p.z;
+        }
+        mix3(self.tint, b) * brightness
+    }
+}
+
+fn mix3(values: [Vec3; 3], b: Vec3) -> Vec3 {
+    values[0] * b.x + values[1] * b.y + values[2] * b.z
+}
+
+fn mix1(values: [f32; 3], b: Vec3) -> f32 {
+    values[0] * b.x + values[1] * b.y + values[2] * b.z
 }
 
 /// The comb direction as a unit vector at a right angle to the normal; any such vector where there is none.

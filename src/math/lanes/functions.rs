@@ -13,6 +13,12 @@ impl<I: Isa> F32s<I> {
         self.gt(Self::splat(-87.0)).keep((self * LOG2_E).exp2_near())
     }
 
+    /// e^self; 0 below −87, and e^87 above 87. The same polynomial as [`crate::math::fast::exp`].
+    #[inline(always)]
+    pub fn exp(self) -> Self {
+        self.gt(Self::splat(-87.0)).keep((self.min(Self::splat(87.0)) * LOG2_E).exp2_near())
+    }
+
     /// 2^self for self in −126 … 126.
     #[inline(always)]
     fn exp2_near(self) -> Self {

@@ -86,7 +86,7 @@ pub struct SceneUniform {
     pub surround_norm: f32,
     pub guard_diffuse: f32,
     pub attenuation_per_m: f32,
-    pub unused: f32,
+    pub opaque: f32,
     pub lobes: [LobeUniform; 3],
 }
 
@@ -150,6 +150,7 @@ impl SceneUniform {
             surround_norm: lobes.surround_norm,
             guard_diffuse: lobes.diffuse,
             attenuation_per_m,
+            opaque: settings.opaque,
             lobes: lobes.lobes.map(|lobe| LobeUniform {
                 albedo: lobe.albedo,
                 shift_rad: lobe.shift_rad,

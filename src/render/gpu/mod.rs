@@ -16,6 +16,7 @@ use super::mean::MeanShadow;
 use super::pelt::{Lighting, Pelt};
 use super::picture::{Counts, Picture, Row, Settings, finish, put, shift, subdivisions};
 use super::resolve::Blending;
+use super::strands::thin::Thinning;
 use super::view::View;
 use crate::data::camera::Camera;
 use crate::data::film::Film;
@@ -45,6 +46,9 @@ pub fn draw(
     let view = |shift_px| View::new(camera, pelt.skin.origin_m, settings.size, shift_px);
     let middle = view(Vec2::ZERO)?;
     let views = (0..passes).map(|pass| view(shift(pass, passes))).collect::<Result<Vec<_>>>()?;
+    let thinned = pelt.guard.and_then(|(strands, _)| Thinning::new(&middle, settings.hair_px).of(strands));
+    let guard = pelt.guard.map(|(strands, fibre)| (thinned.as_ref().unwrap_or(strands), fibre));
+    let pelt = &Pelt { guard, ..*pelt };
     let mut picture = Picture { film: Film::default(), rows: Vec::new(), counts: Counts::default() };
 
     let start = Instant::now();

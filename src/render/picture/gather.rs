@@ -2,7 +2,7 @@
 
 use crate::render::bins::TILE;
 use crate::render::resolve::{HIDDEN, settle};
-use crate::render::strands::Fragment;
+use crate::render::strands::{Fragment, Streak};
 
 /// Pixels of a tile.
 const PIXELS: usize = TILE * TILE;
@@ -13,66 +13,75 @@ const BLOCKS: usize = TILE / BLOCK;
 
 /// Fragments of a tile: first gathered as they come, nearest pieces first, then settled pixel by pixel.
 pub(super) struct Gathered {
-    loose: Vec<Loose>,
-    counts: Vec<u32>,
-    /// Of what was gathered, at least.
-    through: Vec<f32>,
-    /// Greatest depth gathered, m.
-    last_m: Vec<f32>,
-    /// Depth from which on nothing of a pixel is seen, m.
-    limit_m: Vec<f32>,
-    /// Greatest of `limit_m` in blocks of pixels, as it was a while ago: it only ever shrinks.
+    loose: Vec<Fragment>,
+    streaks: Vec<Streak>,
+    pixels: Vec<Fill>,
+    /// Greatest limit in blocks of pixels, as it was a while ago: it only ever shrinks.
     block_m: [f32; BLOCKS * BLOCKS],
     fragments: Vec<Fragment>,
     /// Transmittance of a pixel's fragments up to and with each.
     veil: Vec<f32>,
     /// First fragment of each pixel and one past the last.
     spans: Vec<[u32; 2]>,
+    /// Transmittance of a pixel's fragments behind which nothing is kept.
+    hidden: f32,
 }
 
-#[derive(Clone, Copy)]
-struct Loose {
-    fragment: Fragment,
-    pixel: u32,
+/// What a pixel has gathered so far.
+#[derive(Clone, Copy, Debug)]
+struct Fill {
+    /// Depth from which on nothing is seen, m.
+    limit_m: f32,
+    /// Depth before which everything lies before the skin, m.
+    clear_m: f32,
+    /// Of what was gathered, at least.
+    through: f32,
+    /// Greatest depth gathered, m.
+    last_m: f32,
+    /// Fragments.
+    count: u32,
 }
 
 impl Default for Gathered {
     fn default() -> Self {
+        let fill = Fill { limit_m: 0.0, clear_m: 0.0, through: 1.0, last_m: 0.0, count: 0 };
         Self {
             loose: Vec::new(),
-            counts: vec![0; PIXELS],
-            through: vec![1.0; PIXELS],
-            last_m: vec![0.0; PIXELS],
-            limit_m: vec![f32::INFINITY; PIXELS],
+            streaks: Vec::new(),
+            pixels: vec![fill; PIXELS],
             block_m: [f32::INFINITY; BLOCKS * BLOCKS],
             fragments: Vec::new(),
             veil: Vec::new(),
             spans: vec![[0; 2]; PIXELS],
+            hidden: 0.0,
         }
     }
 }
 
 impl Gathered {
-    /// Forgets the last tile. Behind `limit_m`, by pixel, nothing is seen; −∞ outside the picture.
-    pub(super) fn begin(&mut self, limit_m: impl Fn(usize) -> f32) {
+    /// Forgets the last tile. Of each pixel, `limits_m` gives the depth from which on nothing is seen, −∞ outside the picture, and
+    /// that before which everything lies before the skin. A front that lets through less than `opaque` hides what is behind it.
+    pub(super) fn begin(&mut self, opaque: f32, limits_m: impl Fn(usize) -> [f32; 2]) {
+        self.hidden = HIDDEN * opaque;
         self.loose.clear();
+        self.streaks.clear();
         self.fragments.clear();
         self.veil.clear();
-        self.counts.fill(0);
-        self.through.fill(1.0);
-        self.last_m.fill(0.0);
         self.spans.fill([0; 2]);
-        self.limit_m.iter_mut().enumerate().for_each(|(at, limit)| *limit = limit_m(at));
+        for (at, fill) in self.pixels.iter_mut().enumerate() {
+            let [limit_m, clear_m] = limits_m(at);
+            *fill = Fill { limit_m, clear_m, through: 1.0, last_m: 0.0, count: 0 };
+        }
         self.bound();
     }
 
     /// Brings the blocks' bounds up to date; returns the depth from which on nothing of the tile is seen, m.
     pub(super) fn bound(&mut self) -> f32 {
         self.block_m.fill(f32::NEG_INFINITY);
-        for (row, limits) in self.limit_m.chunks_exact(TILE).enumerate() {
+        for (row, fills) in self.pixels.chunks_exact(TILE).enumerate() {
             let blocks = &mut self.block_m[row / BLOCK * BLOCKS..][..BLOCKS];
-            for (bound, limits) in blocks.iter_mut().zip(limits.chunks_exact(BLOCK)) {
-                *bound = limits.iter().fold(*bound, |a, &b| if a < b { b } else { a });
+            for (bound, fills) in blocks.iter_mut().zip(fills.chunks_exact(BLOCK)) {
+                *bound = fills.iter().fold(*bound, |a, b| if a < b.limit_m { b.limit_m } else { a });
             }
         }
         self.block_m.iter().copied().fold(f32::NEG_INFINITY, f32::max)
@@ -88,37 +97,62 @@ impl Gathered {
     /// Depth from which on nothing of a pixel is seen, m.
     #[inline(always)]
     pub(super) fn limit_m(&self, pixel: usize) -> f32 {
-        self.limit_m[pixel]
+        self.pixels[pixel].limit_m
+    }
+
+    /// Depth before which everything of a pixel lies before its skin, m.
+    #[inline(always)]
+    pub(super) fn clear_m(&self, pixel: usize) -> f32 {
+        self.pixels[pixel].clear_m
+    }
+
+    /// The number of the next streak.
+    #[inline(always)]
+    pub(super) fn next_streak(&self) -> u32 {
+        self.streaks.len() as u32
+    }
+
+    /// Keeps the streak of the fragments that were added since the last one, if there are any.
+    #[inline(always)]
+    pub(super) fn keep_streak(&mut self, streak: impl FnOnce() -> Streak) {
+        if self.loose.last().is_some_and(|last| last.streak == self.next_streak()) {
+            self.streaks.push(streak());
+        }
+    }
+
+    /// What a fragment shows.
+    #[inline(always)]
+    pub(super) fn streak(&self, fragment: &Fragment) -> &Streak {
+        &self.streaks[fragment.streak as usize]
     }
 
     /// Adds a fragment.
     #[inline(always)]
-    pub(super) fn push(&mut self, pixel: usize, fragment: Fragment) {
+    pub(super) fn push(&mut self, fragment: Fragment) {
         let z_m = fragment.z_m();
-        self.counts[pixel] += 1;
-        let last_m = self.last_m[pixel].max(z_m);
-        self.last_m[pixel] = last_m;
+        let fill = &mut self.pixels[fragment.pixel as usize];
+        fill.count += 1;
+        fill.last_m = fill.last_m.max(z_m);
         // Pieces of one hair will be joined, which hides no less than one after the other.
-        let through = self.through[pixel] * (1.0 - fragment.alpha());
-        self.through[pixel] = through;
-        if through < HIDDEN {
-            self.limit_m[pixel] = self.limit_m[pixel].min(last_m);
+        fill.through *= 1.0 - fragment.alpha();
+        if fill.through < self.hidden {
+            fill.limit_m = fill.limit_m.min(fill.last_m);
         }
-        self.loose.push(Loose { fragment, pixel: pixel as u32 });
+        self.loose.push(fragment);
     }
 
     /// Puts every pixel's fragments in order, joins neighbouring pieces of one hair and leaves out what is hidden.
     pub(super) fn settle(&mut self) {
         let mut end = 0;
-        for (span, &count) in self.spans.iter_mut().zip(&self.counts) {
+        for (span, fill) in self.spans.iter_mut().zip(&self.pixels) {
             *span = [end; 2];
-            end += count;
+            end += fill.count;
         }
         self.fragments.resize(end as usize, Fragment::default());
         self.veil.resize(end as usize, 0.0);
-        for loose in &self.loose {
-            let next = &mut self.spans[loose.pixel as usize][1];
-            self.fragments[*next as usize] = loose.fragment;
+        for fragment in &self.loose {
+            let next = &mut self.spans[fragment.pixel as usize][1];
+            self.fragments[*next as usize] = *fragment;
             *next += 1;
         }
         for (pixel, span) in self.spans.iter_mut().enumerate() {
@@ -127,9 +161,10 @@ impl Gathered {
                 continue;
             }
             let (fragments, veil) = (&mut self.fragments[from..to], &mut self.veil[from..to]);
-            let count = settle(fragments, veil);
-            if veil[count - 1] < HIDDEN {
-                self.limit_m[pixel] = self.limit_m[pixel].min(fragments[count - 1].z_m());
+            let count = settle(fragments, veil, self.hidden);
+            if veil[count - 1] < self.hidden {
+                let limit_m = &mut self.pixels[pixel].limit_m;
+                *limit_m = limit_m.min(fragments[count - 1].z_m());
             }
             span[1] = (from + count) as u32;
         }

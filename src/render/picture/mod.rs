@@ -11,6 +11,7 @@ use super::march::volume::{Resolution, Volume};
 use super::mean::MeanShadow;
 use super::pelt::{Lighting, Pelt};
 use super::resolve::Blending;
+use super::strands::thin::Thinning;
 use super::view::View;
 use crate::data::camera::Camera;
 use crate::data::film::{Film, Layers};
@@ -35,6 +36,11 @@ pub struct Settings {
     pub stepping: Stepping,
     /// How finely undercoat is stored.
     pub resolution: Resolution,
+    /// Width, px, that guard hairs have at least at their roots: where single ones are thinner, fewer are drawn, each wider; 0 draws
+    /// every hair as it is.
+    pub hair_px: f32,
+    /// Transmittance below which what is seen already stands for what is behind it.
+    pub opaque: f32,
     /// Memory for the strands of a band of rows, bytes: smaller budgets give more bands and the same picture.
     pub band_bytes: usize,
     /// What the film holds.
@@ -49,6 +55,8 @@ impl Default for Settings {
             blending: Blending::Virtual { fragments: 8 },
             stepping: Stepping::default(),
             resolution: Resolution::default(),
+            hair_px: 0.0,
+            opaque: 1e-3,
             band_bytes: 256 << 20,
             layers: Layers::All,
         }
@@ -56,6 +64,11 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// One pass, no finer than a first look needs: hairs and sub-elements are as fine as pixels show.
+    pub fn preview(size: [usize; 2]) -> Self {
+        Self { size, hair_px: ev("HAIR", 0.5), opaque: ev("OPQ", 0.01), stepping: Stepping { depth: ev("STEP", 0.5), layers: ev("SLAY", 4.0) }, resolution: Resolution { subelement_px: ev("SUB", 1.5), ..Resolution::default() }, ..Self::default() }
+    }
+
     /// Andersen et al. 2016's four passes, with shorter steps and more virtual fragments.
     pub fn best(size: [usize; 2]) -> Self {
         Self {
@@ -118,12 +131,13 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
     let subdivisions = subdivisions(pelt, &middle, &settings.resolution);
     let volume = Volume::new(pelt, &normals, lighting.key.to_light, settings.resolution, subdivisions);
     let mean = MeanShadow::new(pelt, lighting.key.to_light);
+    let thinning = Thinning::new(&middle, settings.hair_px);
     let bytes = volume.as_ref().map_or(0, |v| v.shell().bytes()) + mean.as_ref().map_or(0, MeanShadow::bytes);
     row(&mut picture, "shell", start, bytes);
     for pass in 0..passes {
         let view = View::new(camera, pelt.skin.origin_m, settings.size, shift(pass, passes))?;
         let film =
-            Pass::new(pelt, lighting, &normals, volume.as_ref(), mean.as_ref(), view, settings)?.run(&mut picture);
+            Pass::new(pelt, lighting, &normals, volume.as_ref(), mean.as_ref(), view, thinning, settings)?.run(&mut picture);
         if pass == 0 { picture.film = film } else { add(&mut picture.film, &film) }
     }
     finish(&mut picture.film, 1.0 / passes as f32);
@@ -190,3 +204,5 @@ fn add_row(picture: &mut Picture, name: &'static str, ms: f64, bytes: usize) {
         None => picture.rows.push(Row { name, ms, bytes }),
     }
 }
+
+pub fn ev(n: &str, d: f32) -> f32 { std::env::var(n).ok().and_then(|v| v.parse().ok()).unwrap_or(d) }

@@ -16,6 +16,7 @@ use crate::render::mean::MeanShadow;
 use crate::render::pelt::{Lighting, Pelt};
 use crate::render::skin::SkinTile;
 use crate::render::strands::shade::GuardShader;
+use crate::render::strands::thin::Thinning;
 use crate::render::strands::{Knot, LOOKS, project};
 use crate::render::table::Table;
 use crate::render::view::View;
@@ -30,6 +31,7 @@ pub(super) struct Pass<'a> {
     pub(super) mean: Option<&'a MeanShadow<'a>>,
     pub(super) view: View,
     pub(super) settings: &'a Settings,
+    thinning: Thinning,
     /// The skin's vertices in camera axes.
     pub(super) skin_camera_m: Vec<Vec3>,
     /// Triangles seen from their bare side.
@@ -60,6 +62,7 @@ impl<'a> Pass<'a> {
         volume: Option<&'a Volume<'a>>,
         mean: Option<&'a MeanShadow<'a>>,
         view: View,
+        thinning: Thinning,
         settings: &'a Settings,
     ) -> Result<Self> {
         let guard = match pelt.guard {
@@ -82,6 +85,7 @@ impl<'a> Pass<'a> {
             mean,
             view,
             settings,
+            thinning,
             skin_camera_m,
             bare,
             guard,
@@ -189,8 +193,12 @@ impl<'a> Pass<'a> {
         (0..strands.len())
             .into_par_iter()
             .map_init(Vec::new, |knots, strand| {
+                let widening = self.thinning.widening(strands, strand);
+                if widening <= 0.0 {
+                    return Reach::NOTHING;
+                }
                 knots.clear();
-                project::knots(strands, strand, &self.view, knots);
+                project::knots(strands, strand, widening, &self.view, knots);
                 let mut all = Reach::NOTHING;
                 for pair in knots.windows(2) {
                     let piece = project::reach(&self.view, &pair[0], &pair[1]);
@@ -257,7 +265,8 @@ impl<'a> Pass<'a> {
                 some_knots.clear();
                 some_looks.clear();
                 for &strand in chunk {
-                    project::knots(strands, strand as usize, &self.view, some_knots);
+                    let widening = self.thinning.widening(strands, strand as usize);
+                    project::knots(strands, strand as usize, widening, &self.view, some_knots);
                 }
                 shader.strands(chunk, some_looks);
                 knots.copy_from_slice(some_knots);

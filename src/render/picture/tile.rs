@@ -4,10 +4,10 @@ use super::Settings;
 use super::film::FilmRows;
 use super::gather::Gathered;
 use super::pass::{Band, Pass};
-use super::undercoat::{Look, PixelJourney};
+use super::undercoat::{self, PixelJourney};
 use crate::data::film::Layers;
 use crate::data::strands::Strands;
-use crate::math::lanes::{self, Isa};
+use crate::math::lanes::{self, F32s, Isa, Row, Scalar, Vec3Row};
 use crate::math::{Vec2, Vec3};
 use crate::render::bins::TILE;
 use crate::render::flat::{self, Flat, pixel_ray};
@@ -16,7 +16,7 @@ use crate::render::march::{Journey, Start};
 use crate::render::resolve::{self, Blending, Face, Stretch};
 use crate::render::skin::{self, NONE, SkinTile};
 use crate::render::strands::ribbon::{self, Narrow, Share, Window};
-use crate::render::strands::{Fragment, Knot, LOOKS, radiance_at};
+use crate::render::strands::{Fragment, Knot, LOOKS, Streak, radiance_at};
 
 /// A tile of the picture.
 #[derive(Clone, Copy)]
@@ -50,7 +50,7 @@ impl Pass<'_> {
     /// drawn.
     pub(super) fn gather(&self, place: &Place<'_>, band: &Band, scratch: &mut Scratch) {
         let Scratch { guard, pieces, fragment_count, .. } = scratch;
-        guard.begin(|at| self.limit_m(place, at));
+        guard.begin(self.settings.opaque, |at| [self.limit_m(place, at), self.clear_m(place, at)]);
         let Some((strands, _)) = &self.guard else { return };
         pieces.clear();
         // Positive floats are ordered as their bits.
@@ -83,13 +83,22 @@ impl Pass<'_> {
         (0..4).map(corner_m).fold(place.skin.z_m[at], f32::max)
     }
 
+    /// Depth before which hair lies before a pixel's skin wherever in the pixel it stands, m.
+    fn clear_m(&self, place: &Place<'_>, at: usize) -> f32 {
+        match place.skin.triangle[at] {
+            NONE => f32::INFINITY,
+            triangle if self.bare[triangle as usize] => f32::NEG_INFINITY,
+            _ => place.skin.z_m[at],
+        }
+    }
+
     /// Puts what a tile's pixels hold into one order and colours the film.
     pub(super) fn compose(&self, place: &Place<'_>, band: &Band, scratch: &Scratch, out: &mut FilmRows<'_>) {
-        let Settings { layers, blending, .. } = *self.settings;
+        let Settings { layers, blending, opaque, .. } = *self.settings;
         for (at, x, y) in place.pixels() {
             let skin_face = self.skin_face(x, y, place.skin.triangle[at]);
             let face = |f: &Fragment| match &self.guard {
-                Some((strands, _)) => self.hair_face(strands, band, f),
+                Some((strands, _)) => self.hair_face(strands, band, f.z_m(), scratch.guard.streak(f)),
                 None => Face::default(),
             };
             let (mut fragments, stretches) = (scratch.guard.of(at), &scratch.stretches[at]);
@@ -97,7 +106,7 @@ impl Pass<'_> {
                 // Hair thins the undercoat before it, but only as far as that lets it be seen.
                 fragments = &fragments[..fragments.partition_point(|f| f.z_m() <= scratch.opaque_m[at])];
             }
-            let pixel = resolve::composite(layers, fragments, stretches, blending, skin_face.as_ref(), face);
+            let pixel = resolve::composite(layers, fragments, stretches, blending, opaque, skin_face.as_ref(), face);
             let depth_scale = pixel_ray(&self.view, x, y).length();
             out.set(y - place.from[1], x, &pixel, depth_scale);
         }
@@ -152,11 +161,12 @@ impl Pass<'_> {
                     journeys.push(PixelJourney { pixel: at as u32, z_per_m: 1.0 / scale, journey });
                 }
             }
-            *step_count += lanes::run(Look {
+            *step_count += lanes::run(undercoat::Look {
                 volume,
                 shader,
                 stepping: &self.settings.stepping,
                 fragments,
+                opaque: self.settings.opaque,
                 veiled,
                 journeys,
                 stretches,
@@ -173,8 +183,8 @@ impl Pass<'_> {
     /// they count where they lie before the skin of their own place. Seen from its bare side, skin hides what lies behind
     /// either.
     #[inline(always)]
-    fn before_skin(&self, a: &Knot, b: &Knot, share: &Share, z_m: f32, skin_z_m: f32, triangle: u32) -> bool {
-        let before_middle = z_m < skin_z_m;
+    fn before_skin(&self, a: &Knot, b: &Knot, share: &Share, z_m: f32, skin: &SkinTile, at: usize) -> bool {
+        let (triangle, before_middle) = (skin.triangle[at], z_m < skin.z_m[at]);
         // Planes are asked for only where they decide.
         if triangle == NONE || before_middle != self.bare[triangle as usize] {
             return before_middle;
@@ -203,19 +213,17 @@ impl Pass<'_> {
         Some(skin::look(self.pelt, self.lighting, self.normals, self.mean, triangle, b, direction, z_m))
     }
 
-    fn hair_face(&self, strands: &Strands, band: &Band, fragment: &Fragment) -> Face {
-        let strand = fragment.strand as usize;
-        let radiance = radiance_at(&band.looks[strand * LOOKS..(strand + 1) * LOOKS], fragment.s);
+    fn hair_face(&self, strands: &Strands, band: &Band, z_m: f32, streak: &Streak) -> Face {
         if self.settings.layers == Layers::Light {
-            return Face { radiance, ..Face::default() };
+            return Face { radiance: streak.radiance, ..Face::default() };
         }
-        let strand = band.strands[strand] as usize;
+        let strand = band.strands[streak.strand as usize] as usize;
         let points_m = strands.points_of_m(strand);
-        let piece = ((fragment.s * (points_m.len() - 1) as f32) as usize).min(points_m.len() - 2);
+        let piece = ((streak.s * (points_m.len() - 1) as f32) as usize).min(points_m.len() - 2);
         Face {
-            z_m: fragment.z_m(),
-            radiance,
-            albedo: strands.tint[strand] * strands.profile.ramp_at(fragment.s),
+            z_m,
+            radiance: streak.radiance,
+            albedo: strands.tint[strand] * strands.profile.ramp_at(streak.s),
             tangent: (points_m[piece + 1] - points_m[piece]).normalize_or_zero(),
             normal: Vec3::ZERO,
         }
@@ -264,73 +272,85 @@ impl Brush<'_, '_> {
         let points = self.strands.points_per_strand as u32;
         let strand = piece / points;
         let id = self.strands.id[self.band.strands[strand as usize] as usize];
-        let stroke = Stroke { a, b, strand, first: (piece - strand * points) as f32, id };
+        let first = LOOKS * strand as usize;
+        let Some(looks) = self.band.looks[first..].first_chunk() else { return };
+        let stroke = Stroke { a, b, looks, first: (piece - strand * points) as f32, id };
         let Some(narrow) = Narrow::new(a, b, self.window) else {
             ribbon::rasterise(a, b, self.window, |share| {
-                let at = self.at(&stroke, share.along);
-                self.touch(&stroke, &share, at);
+                let sites = self.sites(&stroke, F32s::<Scalar>::splat(share.along));
+                self.touch(&stroke, &share, sites.z_m.0[0], sites.opacity.0[0]);
+                self.guard.keep_streak(|| sites.streak(0, strand));
             });
             return;
         };
         let mut first = narrow.rows[0];
         while first < narrow.rows[1] {
             let found = narrow.rows::<I>(first);
+            let sites = self.sites(&stroke, F32s::<I>::of(&found.along));
             for lane in 0..I::LANES.min((narrow.rows[1] - first) as usize) {
-                if found.count[lane] == 0 {
-                    continue;
-                }
                 let (row, begin) = (first + lane as i32, found.begin[lane] as i32);
-                let (linear, along) = (found.linear.0[lane], found.along.0[lane]);
-                let at = self.at(&stroke, along);
+                let linear = found.linear.0[lane];
                 for k in 0..found.count[lane] as usize {
                     let coverage = found.coverage[k].0[lane];
                     if coverage > 0.0 {
                         let x = begin + k as i32;
                         let pixel = if narrow.flat { [row, x] } else { [x, row] };
-                        self.touch(&stroke, &Share { pixel, coverage, linear, along }, at);
+                        let share = Share { pixel, coverage, linear, along: 0.0 };
+                        self.touch(&stroke, &share, sites.z_m.0[lane], sites.opacity.0[lane]);
                     }
                 }
+                self.guard.keep_streak(|| sites.streak(lane, strand));
             }
             first += I::LANES as i32;
         }
     }
 
-    /// What a hair is `along` a piece.
+    /// What a hair is like at places `along` a piece.
     #[inline(always)]
-    fn at(&self, stroke: &Stroke<'_>, along: f32) -> At {
-        let s = (stroke.first + along) * self.pass.per_piece;
-        At { z_m: stroke.a.z_m + along * (stroke.b.z_m - stroke.a.z_m), s, opacity: self.pass.opacity.at(s) }
+    fn sites<I: Isa>(&self, stroke: &Stroke<'_>, along: F32s<I>) -> Sites {
+        let s = (along + stroke.first) * self.pass.per_piece;
+        Sites {
+            z_m: (along * (stroke.b.z_m - stroke.a.z_m) + stroke.a.z_m).row(),
+            s: s.row(),
+            opacity: self.pass.opacity.at_lanes(s).row(),
+            radiance: radiance_at(stroke.looks, s).rows(),
+        }
     }
 
     /// Adds a fragment where it may be seen.
     #[inline(always)]
-    fn touch(&mut self, stroke: &Stroke<'_>, share: &Share, At { z_m, s, opacity }: At) {
-        let (place, skin) = (self.place, self.place.skin);
-        let at = place.at(share.pixel[0] as usize, share.pixel[1] as usize);
+    fn touch(&mut self, stroke: &Stroke<'_>, share: &Share, z_m: f32, opacity: f32) {
+        let at = self.place.at(share.pixel[0] as usize, share.pixel[1] as usize);
         if z_m <= self.guard.limit_m(at)
-            && self.pass.before_skin(stroke.a, stroke.b, share, z_m, skin.z_m[at], skin.triangle[at])
+            && (z_m < self.guard.clear_m(at) || self.pass.before_skin(stroke.a, stroke.b, share, z_m, self.place.skin, at))
         {
-            let Stroke { strand, id, .. } = *stroke;
-            self.guard.push(at, Fragment::new(z_m, id, [share.coverage, opacity], strand, s));
+            let streak = self.guard.next_streak();
+            self.guard.push(Fragment::new(z_m, stroke.id, [share.coverage, opacity], streak, at as u32));
         }
     }
 }
 
-/// A place on a hair.
-#[derive(Clone, Copy)]
-struct At {
-    z_m: f32,
+/// Places on a hair, in lanes.
+struct Sites {
+    z_m: Row,
     /// Along the hair, in [0, 1].
-    s: f32,
-    opacity: f32,
+    s: Row,
+    opacity: Row,
+    radiance: Vec3Row,
+}
+
+impl Sites {
+    #[inline(always)]
+    fn streak(&self, lane: usize, strand: u32) -> Streak {
+        Streak { radiance: self.radiance.lane(lane), strand, s: self.s.0[lane] }
+    }
 }
 
 /// A piece of a strand.
 struct Stroke<'a> {
     a: &'a Knot,
     b: &'a Knot,
-    /// The strand's number in the band.
-    strand: u32,
+    looks: &'a [Vec3; LOOKS],
     /// Its number along the strand.
     first: f32,
     id: u32,

@@ -7,7 +7,7 @@ use crate::render::march::light::UndercoatShader;
 use crate::render::march::prisms::Prisms;
 use crate::render::march::volume::Volume;
 use crate::render::march::{Journey, Stepping, Steps, Traveller, march};
-use crate::render::resolve::{OPAQUE, Stretch};
+use crate::render::resolve::Stretch;
 use crate::render::shell::lattice::Lattices;
 use crate::render::strands::Fragment;
 
@@ -31,6 +31,8 @@ pub(super) struct Look<'a> {
     pub(super) stepping: &'a Stepping,
     /// Most virtual fragments per ray.
     pub(super) fragments: u32,
+    /// Transmittance below which what is behind is not looked at.
+    pub(super) opaque: f32,
     pub(super) journeys: &'a [PixelJourney],
     /// Guard hair, where what it hides is to be left out.
     pub(super) veiled: Option<&'a Gathered>,
@@ -195,13 +197,13 @@ impl<I: Isa> Traveller<I> for Sight<'_> {
                 }
             }
         }
-        (left * F32s::of(&self.veil)).gt(F32s::splat(OPAQUE))
+        (left * F32s::of(&self.veil)).gt(F32s::splat(self.look.opaque))
     }
 
     fn end(&mut self, lane: usize) {
         self.close(lane);
         let PixelJourney { pixel, z_per_m, .. } = self.current[lane];
-        if self.through.0[lane] * self.veil.0[lane] <= OPAQUE {
+        if self.through.0[lane] * self.veil.0[lane] <= self.look.opaque {
             let opaque_m = &mut self.look.opaque_m[pixel as usize];
             *opaque_m = opaque_m.min(self.groups.to_m.0[lane] * z_per_m);
         }

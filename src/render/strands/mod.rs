@@ -7,9 +7,10 @@
 pub mod project;
 pub mod ribbon;
 pub mod shade;
+pub mod thin;
 
 use crate::math::Vec3;
-use crate::math::fast::exp;
+use crate::math::lanes::{F32s, Isa, Vec3Row, Vec3s};
 
 /// How often a strand is lit: logarithms of the opaque hair's radiance, linear RGB. Shadow, and radiance with it, goes
 /// exponentially from one to the next.
@@ -20,13 +21,18 @@ pub fn look_s(i: usize) -> f32 {
     (i as f32 / (LOOKS - 1) as f32).sqrt()
 }
 
-/// Radiance at `s` in [0, 1] along a hair.
+/// Radiance at each `s` in [0, 1] along a hair.
 #[inline(always)]
-pub fn radiance_at(looks: &[Vec3], s: f32) -> Vec3 {
-    let at = s * s * (LOOKS - 1) as f32;
-    let low = (at as usize).min(LOOKS - 2);
-    let log = looks[low].lerp(looks[low + 1], at - low as f32);
-    Vec3::new(exp(log.x), exp(log.y), exp(log.z))
+pub fn radiance_at<I: Isa>(looks: &[Vec3; LOOKS], s: F32s<I>) -> Vec3s<I> {
+    let at = (s * s * (LOOKS - 1) as f32).row();
+    let mut log = Vec3Row::default();
+    for lane in 0..I::LANES {
+        let at = at.0[lane];
+        let low = (at as i32 as usize).min(LOOKS - 2);
+        log.set(lane, looks[low].lerp(looks[low + 1], at - low as f32));
+    }
+    let Vec3s { x, y, z } = Vec3s::of(&log);
+    Vec3s::new(x.exp(), y.exp(), z.exp())
 }
 
 /// A point of a strand on the picture.
@@ -51,6 +57,17 @@ pub struct Fragment {
     pub coverage: f32,
     /// The hair's own opacity there, in [0, 1].
     pub opacity: f32,
+    /// What it shows: index of a [`Streak`], in the order of drawing.
+    pub streak: u32,
+    /// Where it falls.
+    pub pixel: u32,
+}
+
+/// A row of a ribbon, or a column where it lies flat: what its fragments have in common.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Streak {
+    /// Radiance of the opaque hair, linear RGB.
+    pub radiance: Vec3,
     /// Number of the hair among those that are drawn.
     pub strand: u32,
     /// Where along the hair, in [0, 1].
@@ -58,10 +75,10 @@ pub struct Fragment {
 }
 
 impl Fragment {
-    /// Of hair `id` at depth `z_m` > 0 along the optical axis, the `strand`th of those that are drawn, at `s` along it.
+    /// Of hair `id` at depth `z_m` > 0 along the optical axis, on a pixel.
     #[inline(always)]
-    pub fn new(z_m: f32, id: u32, [coverage, opacity]: [f32; 2], strand: u32, s: f32) -> Self {
-        Self { order: u64::from(z_m.to_bits()) << 32 | u64::from(id), coverage, opacity, strand, s }
+    pub fn new(z_m: f32, id: u32, [coverage, opacity]: [f32; 2], streak: u32, pixel: u32) -> Self {
+        Self { order: u64::from(z_m.to_bits()) << 32 | u64::from(id), coverage, opacity, streak, pixel }
     }
 
     /// What it hides of the pixel.
@@ -82,9 +99,9 @@ impl Fragment {
         self.order as u32
     }
 
-    /// Sorts by depth, then id, then place along the hair.
+    /// Sorts by depth, then id, then in the order of drawing.
     #[inline(always)]
     pub fn order(&self) -> (u64, u32) {
-        (self.order, self.s.to_bits())
+        (self.order, self.streak)
     }
 }

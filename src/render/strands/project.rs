@@ -6,12 +6,12 @@ use crate::math::Vec3;
 use crate::render::bins::Reach;
 use crate::render::view::View;
 
-/// Appends the knots of one strand.
-pub fn knots(strands: &Strands, strand: usize, view: &View, out: &mut Vec<Knot>) {
+/// Appends the knots of one strand, drawn `widening` times as wide as it is.
+pub fn knots(strands: &Strands, strand: usize, widening: f32, view: &View, out: &mut Vec<Knot>) {
     let points = strands.points_of_m(strand);
     let last = points.len() - 1;
     for (i, &point) in points.iter().enumerate() {
-        let radius_m = strands.root_radius_m[strand] * strands.profile.radius_factor(i as f32 / last as f32);
+        let radius_m = widening * strands.root_radius_m[strand] * strands.profile.radius_factor(i as f32 / last as f32);
         let mut p = view.camera_from_world(point);
         if p.z <= view.near_m {
             // The end of a piece that reaches behind the near plane is drawn where it passes it.
