@@ -56,6 +56,13 @@ fn the_furnace_sees_a_highlight_without_its_normalisation() {
 }
 
 #[test]
+fn coverage_tells_hairs_that_are_a_tenth_too_wide() {
+    let (whole, thinned) = crate::thinned::whole_and_thinned(1.1);
+    let more = crate::thinned::more_guard(&whole, &thinned);
+    assert!(more > 0.02, "{more}");
+}
+
+#[test]
 fn areas_tell_a_ribbon_from_one_a_tenth_wider() {
     use furrier::render::strands::Knot;
     let knot = |x: f32, half_px: f32| Knot { x, y: 3.0 * x, z_m: 1.0, half_px };

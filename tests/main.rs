@@ -47,6 +47,7 @@ mod sphere;
 mod strand_files;
 mod summary;
 mod sweeps;
+mod thinned;
 mod twins;
 mod undercoat;
 mod validator;

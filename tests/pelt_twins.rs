@@ -87,6 +87,12 @@ fn a_pelt_in_bands_and_passes_looks_the_same_on_both() {
 }
 
 #[test]
+fn a_preview_looks_the_same_on_both() {
+    let settings = Settings::preview(small().size);
+    hold(&pelt(400.0, true).pelt(), &pelts::studio(), &pelts::camera(0.35), &settings);
+}
+
+#[test]
 fn simplified_blending_under_many_lights_looks_the_same_on_both() {
     let grown = pelt(60.0, false);
     let settings = Settings { blending: Blending::Simplified { attenuation_per_m: 400.0 }, ..small() };

@@ -91,13 +91,14 @@ pub fn change(frames: &[Film]) -> f64 {
 const SIZE: [usize; 2] = [48, 48];
 
 fn preview() -> Settings {
-    Settings { size: SIZE, ..Settings::default() }
+    Settings::preview(SIZE)
 }
 
 /// How much more final's frames change than supersampled ones.
 fn flicker(films: impl Fn(&Settings) -> Vec<Film>, what: &str) -> f64 {
-    let [truth, preview, best] = [Settings { passes: 8, ..preview() }, preview(), Settings::best(SIZE)]
-        .map(|settings| change(&films(&settings)));
+    let [truth, preview, best] =
+        [Settings { passes: 8, size: SIZE, ..Settings::default() }, preview(), Settings::best(SIZE)]
+            .map(|settings| change(&films(&settings)));
     println!("{what}: FLIP between frames {truth:.4} by 8 passes, {best:.4} by final, {preview:.4} by preview");
     best - truth
 }

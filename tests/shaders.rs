@@ -150,7 +150,7 @@ fn structs_of_kernels_lie_as_in_rust() {
                 surround_norm,
                 guard_diffuse,
                 attenuation_per_m,
-                unused,
+                opaque,
                 lobes
             }),
         ),

@@ -1,5 +1,6 @@
 //! Which tiles of the picture things fall into.
 
+use crate::math::split::cut;
 use rayon::prelude::*;
 
 /// Edge of a tile, px.
@@ -58,13 +59,6 @@ impl Grid {
         };
         (span(0, 0, self.columns), span(1, self.first_row, self.rows))
     }
-}
-
-/// Takes the first `count` off a slice.
-fn cut<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
-    let (first, others) = std::mem::take(rest).split_at_mut(count);
-    *rest = others;
-    first
 }
 
 /// Items by tile.

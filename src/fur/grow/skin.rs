@@ -7,6 +7,7 @@ use crate::data::strands::{Root, Strands};
 use crate::fur::groom::clump;
 use crate::fur::groom::fibre::Fibre;
 use crate::math::hash::{combine, unit_f32};
+use crate::math::split::cut;
 use crate::math::{Mat3, Vec2, Vec3, orthonormal_basis, sampling};
 use rayon::prelude::*;
 
@@ -48,13 +49,6 @@ pub fn grow_on(fibre: &Fibre, mesh: &Mesh, fields: &Fields, seed: u64, triangles
 /// Triangles that one thread grows hair on at a time.
 const GROUP: usize = 32;
 
-/// Takes the first `count` off a slice.
-fn cut<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
-    let (first, others) = std::mem::take(rest).split_at_mut(count);
-    *rest = others;
-    first
-}
-
 /// Room for the hairs of a group of triangles.
 struct Plot<'a> {
     points_m: &'a mut [Vec3],
@@ -76,8 +70,7 @@ impl Field<'_> {
     fn roots(&self, t: usize) -> impl Iterator<Item = (Vec3, u64)> {
         let key = combine(self.seed, t as u64);
         let corners = self.mesh.triangles[t].map(|v| v as usize);
-        let (density, length) =
-            (corners.map(|v| self.fields.density[v]), corners.map(|v| self.fields.length[v]));
+        let (density, length) = (corners.map(|v| self.fields.density[v]), corners.map(|v| self.fields.length[v]));
         let greatest = density.into_iter().fold(0.0, f32::max);
         let expected = self.fibre.density_per_m2 * self.mesh.rest_area_m2(t) * greatest;
         let count = (expected + unit_f32(key)).floor() as u64;

@@ -6,9 +6,9 @@ use std::arch::x86_64::{
     __m256, __m256i, _CMP_LT_OQ, _mm256_add_epi32, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_andnot_ps,
     _mm256_blendv_ps, _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_cvtepi32_ps,
     _mm256_div_ps, _mm256_floor_ps, _mm256_load_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps,
-    _mm256_mullo_epi32, _mm256_or_si256, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32, _mm256_slli_epi32,
-    _mm256_sqrt_ps, _mm256_srai_epi32, _mm256_srli_epi32, _mm256_store_ps, _mm256_storeu_si256, _mm256_sub_ps,
-    _mm256_xor_si256,
+    _mm256_mullo_epi32, _mm256_or_si256, _mm256_permutevar8x32_ps, _mm256_set1_epi32, _mm256_set1_ps,
+    _mm256_setr_epi32, _mm256_slli_epi32, _mm256_sqrt_ps, _mm256_srai_epi32, _mm256_srli_epi32, _mm256_store_ps,
+    _mm256_storeu_si256, _mm256_sub_ps, _mm256_xor_si256,
 };
 
 /// Eight lanes.
@@ -112,6 +112,10 @@ impl Isa for Avx2 {
     #[inline(always)]
     fn mask_bits(m: __m256) -> u32 {
         vector!(_mm256_movemask_ps(m)) as u32
+    }
+    #[inline(always)]
+    fn pick(row: &Row, at: __m256i) -> __m256 {
+        vector!(_mm256_permutevar8x32_ps(_mm256_load_ps(row.0.as_ptr()), at))
     }
     #[inline(always)]
     fn mask_from_bits(bits: u32) -> __m256 {

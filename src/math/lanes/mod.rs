@@ -95,6 +95,8 @@ pub trait Isa: Copy + Debug + Default + PartialEq + 'static {
     fn sar<const N: i32>(u: Self::U) -> Self::U;
     /// Signed whole numbers as the nearest numbers.
     fn signed_to_f(u: Self::U) -> Self::F;
+    /// Numbers of a row of [`MOST`], by the lowest three bits of whole numbers.
+    fn pick(row: &Row, at: Self::U) -> Self::F;
 }
 
 /// Work that is worth doing in lanes.
@@ -276,6 +278,12 @@ impl<I: Isa> U32s<I> {
     #[inline(always)]
     pub fn xor(self, other: Self) -> Self {
         Self(I::xor(self.0, other.0))
+    }
+
+    /// Numbers of a row of [`MOST`], by the lowest three bits.
+    #[inline(always)]
+    pub fn pick(self, row: &Row) -> F32s<I> {
+        F32s(I::pick(row, self.0))
     }
 
     /// Shifted up by N bits.

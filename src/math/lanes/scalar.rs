@@ -77,6 +77,10 @@ impl Isa for Scalar {
         u32::from(m)
     }
     #[inline(always)]
+    fn pick(row: &Row, at: u32) -> f32 {
+        row.0[at as usize % MOST]
+    }
+    #[inline(always)]
     fn mask_from_bits(bits: u32) -> bool {
         bits & 1 != 0
     }

@@ -64,9 +64,16 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// One pass, no finer than a first look needs: hairs and sub-elements are as fine as pixels show.
+    /// One pass, no finer than a first look needs: hair and sub-elements as fine as pixels show them.
     pub fn preview(size: [usize; 2]) -> Self {
-        Self { size, hair_px: ev("HAIR", 0.5), opaque: ev("OPQ", 0.01), stepping: Stepping { depth: ev("STEP", 0.5), layers: ev("SLAY", 4.0) }, resolution: Resolution { subelement_px: ev("SUB", 1.5), ..Resolution::default() }, ..Self::default() }
+        Self {
+            size,
+            hair_px: 0.5,
+            opaque: 0.01,
+            stepping: Stepping { depth: 0.35, layers: 2.0 },
+            resolution: Resolution { subelement_px: 3.0, ..Resolution::default() },
+            ..Self::default()
+        }
     }
 
     /// Andersen et al. 2016's four passes, with shorter steps and more virtual fragments.
@@ -136,8 +143,8 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
     row(&mut picture, "shell", start, bytes);
     for pass in 0..passes {
         let view = View::new(camera, pelt.skin.origin_m, settings.size, shift(pass, passes))?;
-        let film =
-            Pass::new(pelt, lighting, &normals, volume.as_ref(), mean.as_ref(), view, thinning, settings)?.run(&mut picture);
+        let film = Pass::new(pelt, lighting, &normals, volume.as_ref(), mean.as_ref(), view, thinning, settings)?
+            .run(&mut picture);
         if pass == 0 { picture.film = film } else { add(&mut picture.film, &film) }
     }
     finish(&mut picture.film, 1.0 / passes as f32);
@@ -204,5 +211,3 @@ fn add_row(picture: &mut Picture, name: &'static str, ms: f64, bytes: usize) {
         None => picture.rows.push(Row { name, ms, bytes }),
     }
 }
-
-pub fn ev(n: &str, d: f32) -> f32 { std::env::var(n).ok().and_then(|v| v.parse().ok()).unwrap_or(d) }

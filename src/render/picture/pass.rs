@@ -7,6 +7,7 @@ use crate::data::film::Film;
 use crate::data::strands::Strands;
 use crate::error::Result;
 use crate::math::Vec3;
+use crate::math::lanes::Vec3Row;
 use crate::render::bins::{Bins, Grid, Reach, TILE};
 use crate::render::flat::{self, Flat};
 use crate::render::march::enter::Entrances;
@@ -17,7 +18,7 @@ use crate::render::pelt::{Lighting, Pelt};
 use crate::render::skin::SkinTile;
 use crate::render::strands::shade::GuardShader;
 use crate::render::strands::thin::Thinning;
-use crate::render::strands::{Knot, LOOKS, project};
+use crate::render::strands::{Knot, project};
 use crate::render::table::Table;
 use crate::render::view::View;
 use rayon::prelude::*;
@@ -49,8 +50,8 @@ pub(super) struct Pass<'a> {
 pub(super) struct Band {
     pub(super) strands: Vec<u32>,
     pub(super) knots: Vec<Knot>,
-    /// Logarithms of radiance, [`LOOKS`] of each strand.
-    pub(super) looks: Vec<Vec3>,
+    /// Logarithms of radiance, one row for each strand.
+    pub(super) looks: Vec<Vec3Row>,
     pub(super) bins: Bins,
 }
 
@@ -217,7 +218,7 @@ impl<'a> Pass<'a> {
     /// Cuts the picture into bands of whole tile rows whose strands fit the budget.
     fn bands(&self, whole: &Grid, reaches: &[Reach]) -> Vec<Grid> {
         let points = self.guard.as_ref().map_or(0, |(strands, _)| strands.points_per_strand);
-        let per_strand = points * (size_of::<Knot>() + 12) + LOOKS * size_of::<Vec3>();
+        let per_strand = points * (size_of::<Knot>() + 12) + size_of::<Vec3Row>();
         let mut starting = vec![0_usize; whole.rows];
         let mut crossing = vec![0_isize; whole.rows + 1];
         for rows in reaches.iter().map(|reach| whole.touched(reach).1).filter(|rows| !rows.is_empty()) {
@@ -256,11 +257,11 @@ impl<'a> Pass<'a> {
         const CHUNK: usize = 512;
         let points = strands.points_per_strand;
         let size = visible.len() * points;
-        let (mut knots, mut looks) = (vec![Knot::default(); size], vec![Vec3::ZERO; visible.len() * LOOKS]);
+        let (mut knots, mut looks) = (vec![Knot::default(); size], vec![Vec3Row::default(); visible.len()]);
         visible
             .par_chunks(CHUNK)
-            .zip(knots.par_chunks_mut(CHUNK * points).zip(looks.par_chunks_mut(CHUNK * LOOKS)))
-            .for_each_init(Default::default, |scratch: &mut (Vec<Knot>, Vec<Vec3>), (chunk, (knots, looks))| {
+            .zip(knots.par_chunks_mut(CHUNK * points).zip(looks.par_chunks_mut(CHUNK)))
+            .for_each_init(Default::default, |scratch: &mut (Vec<Knot>, Vec<Vec3Row>), (chunk, (knots, looks))| {
                 let (some_knots, some_looks) = scratch;
                 some_knots.clear();
                 some_looks.clear();

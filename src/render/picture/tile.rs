@@ -16,7 +16,7 @@ use crate::render::march::{Journey, Start};
 use crate::render::resolve::{self, Blending, Face, Stretch};
 use crate::render::skin::{self, NONE, SkinTile};
 use crate::render::strands::ribbon::{self, Narrow, Share, Window};
-use crate::render::strands::{Fragment, Knot, LOOKS, Streak, radiance_at};
+use crate::render::strands::{Fragment, Knot, Streak, radiance_at};
 
 /// A tile of the picture.
 #[derive(Clone, Copy)]
@@ -49,7 +49,7 @@ impl Pass<'_> {
     /// Gathers the fragments of guard hair: nearest pieces first, so that most of those that hide behind them are never
     /// drawn.
     pub(super) fn gather(&self, place: &Place<'_>, band: &Band, scratch: &mut Scratch) {
-        let Scratch { guard, pieces, fragment_count, .. } = scratch;
+        let Scratch { guard, pieces, strokes, fragment_count, .. } = scratch;
         guard.begin(self.settings.opaque, |at| [self.limit_m(place, at), self.clear_m(place, at)]);
         let Some((strands, _)) = &self.guard else { return };
         pieces.clear();
@@ -59,7 +59,7 @@ impl Pass<'_> {
         pieces.extend(band.bins.of(place.in_band).iter().map(keyed));
         pieces.sort_unstable();
         let window = Window { from: place.from.map(|v| v as i32), to: place.to.map(|v| v as i32) };
-        lanes::run(Brush { pass: self, strands, place, band, pieces, window, guard });
+        lanes::run(Brush { pass: self, strands, place, band, pieces, window, guard, strokes });
         *fragment_count += guard.len() as u64;
         guard.settle();
     }
@@ -240,6 +240,7 @@ struct Brush<'a, 'p> {
     pieces: &'a [u64],
     window: Window,
     guard: &'a mut Gathered,
+    strokes: &'a mut Vec<Stroke>,
 }
 
 impl lanes::Work for Brush<'_, '_> {
@@ -251,16 +252,24 @@ impl lanes::Work for Brush<'_, '_> {
             if f32::from_bits((some[0] >> 32) as u32) > self.guard.bound() {
                 break;
             }
+            // Pieces lie all over the memory: fetched side by side they come sooner than one after the other.
+            self.strokes.clear();
             for &key in some {
-                self.piece::<I>(f32::from_bits((key >> 32) as u32), key as u32);
+                self.fetch(f32::from_bits((key >> 32) as u32), key as u32);
             }
+            let strokes = std::mem::take(self.strokes);
+            for stroke in &strokes {
+                self.stroke::<I>(stroke);
+            }
+            *self.strokes = strokes;
         }
     }
 }
 
 impl Brush<'_, '_> {
+    /// Keeps a piece that may be seen.
     #[inline(always)]
-    fn piece<I: Isa>(&mut self, nearest_m: f32, piece: u32) {
+    fn fetch(&mut self, nearest_m: f32, piece: u32) {
         let (a, b) = (&self.band.knots[piece as usize], &self.band.knots[piece as usize + 1]);
         let Place { from, to, .. } = *self.place;
         let pad = std::f32::consts::SQRT_2 * a.half_px.max(b.half_px);
@@ -272,21 +281,25 @@ impl Brush<'_, '_> {
         let points = self.strands.points_per_strand as u32;
         let strand = piece / points;
         let id = self.strands.id[self.band.strands[strand as usize] as usize];
-        let first = LOOKS * strand as usize;
-        let Some(looks) = self.band.looks[first..].first_chunk() else { return };
-        let stroke = Stroke { a, b, looks, first: (piece - strand * points) as f32, id };
+        let looks = self.band.looks[strand as usize];
+        self.strokes.push(Stroke { a: *a, b: *b, looks, strand, first: (piece - strand * points) as f32, id });
+    }
+
+    #[inline(always)]
+    fn stroke<I: Isa>(&mut self, stroke: &Stroke) {
+        let Stroke { a, b, strand, .. } = stroke;
         let Some(narrow) = Narrow::new(a, b, self.window) else {
             ribbon::rasterise(a, b, self.window, |share| {
-                let sites = self.sites(&stroke, F32s::<Scalar>::splat(share.along));
-                self.touch(&stroke, &share, sites.z_m.0[0], sites.opacity.0[0]);
-                self.guard.keep_streak(|| sites.streak(0, strand));
+                let sites = self.sites(stroke, F32s::<Scalar>::splat(share.along));
+                self.touch(stroke, &share, sites.z_m.0[0], sites.opacity.0[0]);
+                self.guard.keep_streak(|| sites.streak(0, *strand));
             });
             return;
         };
         let mut first = narrow.rows[0];
         while first < narrow.rows[1] {
             let found = narrow.rows::<I>(first);
-            let sites = self.sites(&stroke, F32s::<I>::of(&found.along));
+            let sites = self.sites(stroke, F32s::<I>::of(&found.along));
             for lane in 0..I::LANES.min((narrow.rows[1] - first) as usize) {
                 let (row, begin) = (first + lane as i32, found.begin[lane] as i32);
                 let linear = found.linear.0[lane];
@@ -296,10 +309,10 @@ impl Brush<'_, '_> {
                         let x = begin + k as i32;
                         let pixel = if narrow.flat { [row, x] } else { [x, row] };
                         let share = Share { pixel, coverage, linear, along: 0.0 };
-                        self.touch(&stroke, &share, sites.z_m.0[lane], sites.opacity.0[lane]);
+                        self.touch(stroke, &share, sites.z_m.0[lane], sites.opacity.0[lane]);
                     }
                 }
-                self.guard.keep_streak(|| sites.streak(lane, strand));
+                self.guard.keep_streak(|| sites.streak(lane, *strand));
             }
             first += I::LANES as i32;
         }
@@ -307,22 +320,23 @@ impl Brush<'_, '_> {
 
     /// What a hair is like at places `along` a piece.
     #[inline(always)]
-    fn sites<I: Isa>(&self, stroke: &Stroke<'_>, along: F32s<I>) -> Sites {
+    fn sites<I: Isa>(&self, stroke: &Stroke, along: F32s<I>) -> Sites {
         let s = (along + stroke.first) * self.pass.per_piece;
         Sites {
             z_m: (along * (stroke.b.z_m - stroke.a.z_m) + stroke.a.z_m).row(),
             s: s.row(),
             opacity: self.pass.opacity.at_lanes(s).row(),
-            radiance: radiance_at(stroke.looks, s).rows(),
+            radiance: radiance_at(&stroke.looks, s).rows(),
         }
     }
 
     /// Adds a fragment where it may be seen.
     #[inline(always)]
-    fn touch(&mut self, stroke: &Stroke<'_>, share: &Share, z_m: f32, opacity: f32) {
+    fn touch(&mut self, stroke: &Stroke, share: &Share, z_m: f32, opacity: f32) {
         let at = self.place.at(share.pixel[0] as usize, share.pixel[1] as usize);
         if z_m <= self.guard.limit_m(at)
-            && (z_m < self.guard.clear_m(at) || self.pass.before_skin(stroke.a, stroke.b, share, z_m, self.place.skin, at))
+            && (z_m < self.guard.clear_m(at)
+                || self.pass.before_skin(&stroke.a, &stroke.b, share, z_m, self.place.skin, at))
         {
             let streak = self.guard.next_streak();
             self.guard.push(Fragment::new(z_m, stroke.id, [share.coverage, opacity], streak, at as u32));
@@ -347,10 +361,12 @@ impl Sites {
 }
 
 /// A piece of a strand.
-struct Stroke<'a> {
-    a: &'a Knot,
-    b: &'a Knot,
-    looks: &'a [Vec3; LOOKS],
+struct Stroke {
+    a: Knot,
+    b: Knot,
+    looks: Vec3Row,
+    /// The strand's number in the band.
+    strand: u32,
     /// Its number along the strand.
     first: f32,
     id: u32,
@@ -371,6 +387,7 @@ pub(super) struct Scratch {
     guard: Gathered,
     /// Depth's bits and index of each piece in the tile.
     pieces: Vec<u64>,
+    strokes: Vec<Stroke>,
     starts: Vec<Vec<Start>>,
     journeys: Vec<PixelJourney>,
     stretches: Vec<Vec<Stretch>>,
@@ -397,6 +414,7 @@ impl Default for Scratch {
         Self {
             guard: Gathered::default(),
             pieces: Vec::new(),
+            strokes: Vec::new(),
             starts: vec![Vec::new(); SIZE],
             journeys: Vec::new(),
             stretches: vec![Vec::new(); SIZE],

@@ -10,11 +10,11 @@ pub mod shade;
 pub mod thin;
 
 use crate::math::Vec3;
-use crate::math::lanes::{F32s, Isa, Vec3Row, Vec3s};
+use crate::math::lanes::{F32s, Isa, MOST, Row, U32s, Vec3Row, Vec3s};
 
 /// How often a strand is lit: logarithms of the opaque hair's radiance, linear RGB. Shadow, and radiance with it, goes
 /// exponentially from one to the next.
-pub const LOOKS: usize = 8;
+pub const LOOKS: usize = MOST;
 
 /// Where along the hair, in [0, 1], look `i` is taken: closer to each other towards the tips, which are seen most.
 pub fn look_s(i: usize) -> f32 {
@@ -23,16 +23,18 @@ pub fn look_s(i: usize) -> f32 {
 
 /// Radiance at each `s` in [0, 1] along a hair.
 #[inline(always)]
-pub fn radiance_at<I: Isa>(looks: &[Vec3; LOOKS], s: F32s<I>) -> Vec3s<I> {
-    let at = (s * s * (LOOKS - 1) as f32).row();
-    let mut log = Vec3Row::default();
-    for lane in 0..I::LANES {
-        let at = at.0[lane];
-        let low = (at as i32 as usize).min(LOOKS - 2);
-        log.set(lane, looks[low].lerp(looks[low + 1], at - low as f32));
-    }
-    let Vec3s { x, y, z } = Vec3s::of(&log);
-    Vec3s::new(x.exp(), y.exp(), z.exp())
+pub fn radiance_at<I: Isa>(looks: &Vec3Row, s: F32s<I>) -> Vec3s<I> {
+    let at = s * s * (LOOKS - 1) as f32;
+    let low = at.floor().within(0.0, (LOOKS - 2) as f32);
+    let (low, part) = (low.to_whole(), at - low);
+    Vec3s::new(between(&looks.x, low, part), between(&looks.y, low, part), between(&looks.z, low, part))
+}
+
+/// e to the power that lies `part` of the way from number `low` to the next.
+#[inline(always)]
+fn between<I: Isa>(row: &Row, low: U32s<I>, part: F32s<I>) -> F32s<I> {
+    let (from, to) = (low.pick(row), low.plus_splat(1).pick(row));
+    (from + (to - from) * part).exp()
 }
 
 /// A point of a strand on the picture.

@@ -68,12 +68,12 @@ impl<'a> GuardShader<'a> {
     }
 
     /// Appends the looks of some strands, root first.
-    pub fn strands(&self, strands: &[u32], out: &mut Vec<Vec3>) {
+    pub fn strands(&self, strands: &[u32], out: &mut Vec<Vec3Row>) {
         lanes::run(Shade { shader: self, strands, out });
     }
 
     #[inline(always)]
-    fn strand<I: Isa>(&self, strand: usize, out: &mut Vec<Vec3>) {
+    fn strand<I: Isa>(&self, strand: usize) -> Vec3Row {
         let (strands, pelt) = (self.strands, &self.pelt);
         let root = strands.roots[strand];
         let corners = pelt.skin.triangles[root.triangle as usize].map(|v| v as usize);
@@ -97,6 +97,7 @@ impl<'a> GuardShader<'a> {
         // The hair's direction turns evenly from point to point.
         let turn = |i: usize| if i == 0 || i >= last { 2.0 } else { 1.0 };
         let step = |i: usize| (point(i + 1) - point(i.saturating_sub(1))) * turn(i);
+        let mut looks = [Vec3::ZERO; LOOKS];
         for first in (0..self.sites.len()).step_by(I::LANES) {
             let count = I::LANES.min(self.sites.len() - first);
             let (mut at_m, mut along, mut s) = (Vec3Row::default(), Vec3Row::default(), Row::default());
@@ -126,10 +127,14 @@ impl<'a> GuardShader<'a> {
             };
             let Vec3s { x, y, z } = self.radiance(&spot);
             let log_radiance = Vec3s::new(log(x), log(y), log(z)).rows();
-            out.extend((0..count).map(|lane| log_radiance.lane(lane)));
+            for (lane, look) in looks[first..first + count].iter_mut().enumerate() {
+                *look = log_radiance.lane(lane);
+            }
         }
-        let begin = out.len() - self.sites.len();
-        settle(&mut out[begin..]);
+        settle(&mut looks);
+        let mut row = Vec3Row::default();
+        looks.iter().enumerate().for_each(|(i, &look)| row.set(i, look));
+        row
     }
 
     #[inline(always)]
@@ -195,7 +200,7 @@ fn log<I: Isa>(radiance: F32s<I>) -> F32s<I> {
 struct Shade<'a, 'o> {
     shader: &'a GuardShader<'a>,
     strands: &'a [u32],
-    out: &'o mut Vec<Vec3>,
+    out: &'o mut Vec<Vec3Row>,
 }
 
 impl lanes::Work for Shade<'_, '_> {
@@ -204,7 +209,8 @@ impl lanes::Work for Shade<'_, '_> {
     #[inline(always)]
     fn run<I: Isa>(self) {
         for &strand in self.strands {
-            self.shader.strand::<I>(strand as usize, self.out);
+            let looks = self.shader.strand::<I>(strand as usize);
+            self.out.push(looks);
         }
     }
 }
