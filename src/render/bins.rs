@@ -124,6 +124,11 @@ impl Bins {
         &self.items[self.starts[tile] as usize..self.starts[tile + 1] as usize]
     }
 
+    /// Items in some tiles from `first` on.
+    pub fn items_of(&self, first: usize, tiles: usize) -> usize {
+        (self.starts[first + tiles] - self.starts[first]) as usize
+    }
+
     /// Items in all tiles, each counted once per tile.
     pub fn items(&self) -> usize {
         self.items.len()

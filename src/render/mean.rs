@@ -1,26 +1,24 @@
 //! The key light's shadow in hair as dense as it is in the mean: optical depth from every vertex of the skin, at heights up
 //! to the tips, through the shell to its top or an open border (`docs/steps/shade.md`).
 
+mod walk;
+
 use super::pelt::Pelt;
 use super::shell::Shell;
 use super::shell::prism::Place;
 use crate::fur::groom::fibre::{Fibre, LENGTH_SPREAD};
 use crate::fur::undercoat::Undercoat;
 use crate::math::Vec3;
+use crate::math::lanes::{self, MOST};
 use rayon::prelude::*;
 use std::sync::OnceLock;
+use walk::{Starts, Walk};
 
 /// Intervals of height up to the tips.
 const LAYERS: usize = 24;
 
-/// Longest step, as a share of the tips' height over the skin.
-const STEP: f32 = 1.0 / 16.0;
-
 /// Optical depth beyond which no light is left.
 const DARK: f32 = 15.0;
-
-/// No march takes more steps.
-const MOST_STEPS: usize = 512;
 
 /// Optical depths of undercoat and guard hair towards the key light at heights from the skin to the tips.
 pub type Depths = [[f32; 2]; LAYERS + 1];
@@ -61,12 +59,6 @@ impl Kind {
             std::array::from_fn(|i| fibre.density_per_m2 * slopes.stretch * width(tips * i as f32 / last));
         Self { slopes, width_per_m }
     }
-
-    fn at(&self, share: f32) -> f32 {
-        let at = share.clamp(0.0, 1.0) * (LAYERS * 4) as f32;
-        let low = (at as usize).min(LAYERS * 4 - 1);
-        self.width_per_m[low] + (at - low as f32) * (self.width_per_m[low + 1] - self.width_per_m[low])
-    }
 }
 
 /// Shadows by vertex, filled when first needed; each depends on nothing but its vertex.
@@ -77,6 +69,8 @@ pub struct MeanShadow<'a> {
     tips: f32,
     kinds: [Option<Kind>; 2],
     to_light: Vec3,
+    /// Twice the area of each triangle in the rest pose, m².
+    twice_area_m2: Vec<f32>,
     /// Triangles around each vertex's position class.
     around: Vec<Vec<u32>>,
     cells: Vec<OnceLock<Depths>>,
@@ -103,6 +97,7 @@ impl<'a> MeanShadow<'a> {
             tips,
             kinds: [pelt.undercoat, guard].map(|fibre| fibre.map(|fibre| Kind::new(fibre, shell_m, tips))),
             to_light,
+            twice_area_m2: (0..pelt.skin.triangles.len()).map(|t| 2.0 * pelt.skin.rest_area_m2(t)).collect(),
             cells: std::iter::repeat_with(OnceLock::new).take(around.len()).collect(),
             around,
         })
@@ -151,107 +146,57 @@ impl<'a> MeanShadow<'a> {
         self.cells[class as usize].get_or_init(|| {
             let mut depths = Depths::default();
             let mut above = [0.0; 2];
-            for (i, depth) in depths.iter_mut().enumerate().rev() {
+            let heights: [f32; LAYERS + 1] = std::array::from_fn(|i| self.tips * i as f32 / LAYERS as f32);
+            for (depths, heights) in depths.rchunks_mut(MOST).zip(heights.rchunks(MOST)) {
                 // Below where no light is left there is none.
-                if above[0] + above[1] < DARK {
-                    above = self.depths(class, self.tips * i as f32 / LAYERS as f32);
+                if above[0] + above[1] >= DARK {
+                    depths.fill(above);
+                    continue;
                 }
-                *depth = above;
+                let mut starts = Starts::default();
+                for (start, &t) in starts.iter_mut().zip(heights) {
+                    *start = self.start(class, t);
+                }
+                let found = lanes::run(Walk { mean: self, starts: &starts });
+                for (depth, found) in depths.iter_mut().zip(found).rev() {
+                    if above[0] + above[1] < DARK {
+                        above = found;
+                    }
+                    *depth = above;
+                }
             }
             depths
         })
     }
 
-    /// Depths from above a vertex: through the prism around it into which the light's direction leads.
-    fn depths(&self, class: u32, t: f32) -> [f32; 2] {
-        let mut best: Option<([f32; 4], u32, Place)> = None;
+    /// Where a ray begins above a vertex: in the prism around it into which the light's direction leads.
+    fn start(&self, class: u32, t: f32) -> Option<(u32, Place, Vec3)> {
+        let mut best: Option<([f32; 4], u32, Place, Vec3)> = None;
         for &triangle in &self.around[class as usize] {
             let corners = self.shell.skin.triangles[triangle as usize];
             let Some(corner) = corners.iter().position(|&v| self.shell.skin.position_class[v as usize] == class) else {
                 continue;
             };
             let place = Place { b: [f32::from(u8::from(corner == 1)), f32::from(u8::from(corner == 2))], t };
-            let rates = self.shell.prism(triangle).jacobian(&place).rates(self.to_light);
+            let jacobian = self.shell.prism(triangle).jacobian(&place);
+            let rates = jacobian.rates(self.to_light);
             let rates = [-rates.x - rates.y, rates.x, rates.y];
             let least = rates[(corner + 1) % 3].min(rates[(corner + 2) % 3]);
             // Of equals, the one that lies first in space: their order in the mesh must not show.
             let [p, q, r] = self.shell.skin.corners_m(triangle as usize);
             let key = [least, -(p + q + r).x, -(p + q + r).y, -(p + q + r).z];
             if best.as_ref().is_none_or(|(most, ..)| key.partial_cmp(most) == Some(std::cmp::Ordering::Greater)) {
-                best = Some((key, triangle, place));
+                best = Some((key, triangle, place, jacobian.at_m));
             }
         }
-        match best {
-            // No prism lies that way: the light comes over an open border.
-            Some(([least, ..], triangle, place)) if least > -1e-3 / self.shell.undercoat.height_m => {
-                self.march(triangle, place)
-            }
-            _ => [0.0; 2],
-        }
+        // Where no prism lies that way, the light comes over an open border.
+        let ([least, ..], triangle, place, at_m) = best?;
+        (least > -1e-3 / self.shell.undercoat.height_m).then_some((triangle, place, at_m))
     }
 
-    fn march(&self, mut triangle: u32, mut place: Place) -> [f32; 2] {
-        let mut sum = [0.0_f32; 2];
-        let mut prism = self.shell.prism(triangle);
-        let origin_m = prism.jacobian(&place).at_m;
-        let direction = self.to_light;
-        let mut at_m = 0.0;
-        for _ in 0..MOST_STEPS {
-            let j = prism.jacobian(&place);
-            place = place.moved(j.rates(origin_m + direction * at_m - j.at_m), 1.0);
-            let rates = j.rates(direction);
-            if !rates.is_finite() || rates == Vec3::ZERO || sum[0] + sum[1] > DARK {
-                return sum;
-            }
-            let tips_m = j.up_m.length() * self.tips;
-            let (side, after_m) = self.next_side(&place, rates);
-            let length_m = after_m.max(0.0).min(STEP * tips_m);
-            let middle = place.moved(rates, 0.5 * length_m);
-            let b = middle.barycentric();
-            let up_m = j.up_m.length();
-            let sine = (j.up_m / up_m).cross(direction).length();
-            let standing = self.shell.scalar(&self.shell.fields.density, triangle, b)
-                * (2.0 * self.shell.skin.rest_area_m2(triangle as usize))
-                / j.determinant.abs();
-            for (sum, kind) in sum.iter_mut().zip(&self.kinds) {
-                let Some(kind) = kind else { continue };
-                let depth = standing * up_m * kind.at(middle.t / self.tips) * kind.slopes.mean_sine(sine) * length_m;
-                *sum += if depth.is_finite() { depth } else { 0.0 };
-            }
-            at_m += length_m;
-            place = place.moved(rates, length_m);
-            if length_m < after_m {
-                continue;
-            }
-            let Some(beyond) = side.and_then(|corner| self.shell.neighbours.beyond(triangle, corner)) else {
-                return sum;
-            };
-            let b = place.barycentric().to_array();
-            let (from, to) = (side.unwrap_or(0), usize::from(beyond.corner));
-            let mut next = [0.0; 3];
-            // The neighbour runs through the shared edge the other way around.
-            next[(to + 1) % 3] = b[(from + 2) % 3];
-            next[(to + 2) % 3] = b[(from + 1) % 3];
-            let whole = next[0] + next[1] + next[2];
-            place.b = [next[1] / whole, next[2] / whole];
-            triangle = beyond.triangle;
-            prism = self.shell.prism(triangle);
-            at_m += 1e-8 * tips_m;
-        }
-        sum
-    }
-
-    /// The side passed first: opposite to a corner, or none for the tips and the skin; and after what distance, m.
-    fn next_side(&self, place: &Place, rates: Vec3) -> (Option<usize>, f32) {
-        let b = place.barycentric();
-        let sides = [
-            (Some(0), b.x, -rates.x - rates.y),
-            (Some(1), b.y, rates.x),
-            (Some(2), b.z, rates.y),
-            (None, self.tips - place.t, -rates.z),
-            (None, place.t, rates.z),
-        ];
-        let passed = sides.into_iter().filter(|side| side.2 < 0.0).map(|(side, left, rate)| (side, left / -rate));
-        passed.fold((None, f32::INFINITY), |first, next| if next.1 < first.1 { next } else { first })
+    /// The prism beyond the side opposite to a corner, and its own corner opposite to that side.
+    fn beyond(&self, triangle: u32, corner: usize) -> Option<(u32, usize)> {
+        let beyond = self.shell.neighbours.beyond(triangle, (corner < 3).then_some(corner)?)?;
+        Some((beyond.triangle, usize::from(beyond.corner)))
     }
 }

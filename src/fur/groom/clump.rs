@@ -74,14 +74,24 @@ impl Around {
         if !(within(at.x, self.count[0]) && within(at.y, self.count[1]) && within(at.z, self.count[2])) {
             return to_centre_in_space(root_m, self.spacing_m, self.seed);
         }
-        let mut nearest = Vec3::INFINITY;
-        for z in z - 1..=z + 1 {
-            for y in y - 1..=y + 1 {
-                let row = (z * self.count[1] + y) * self.count[0] + x - 1;
+        // How far the cells before, around and after the root's are, at least.
+        let part = (root_m / self.spacing_m - (at + self.first)) * self.spacing_m;
+        let apart = |part: f32| [part * part, 0.0, (self.spacing_m - part) * (self.spacing_m - part)];
+        let (apart_y, apart_z) = (apart(part.y), apart(part.z));
+        let mut nearest = self.centres_m[(z * self.count[1] + y) * self.count[0] + x] - root_m;
+        let mut least = nearest.length_squared();
+        for k in 0..3 {
+            for j in 0..3 {
+                // With room for rounding.
+                if (apart_y[j] + apart_z[k]) * 0.999 > least {
+                    continue;
+                }
+                let row = ((z + k - 1) * self.count[1] + y + j - 1) * self.count[0] + x - 1;
                 for centre in &self.centres_m[row..row + 3] {
                     let to_centre = *centre - root_m;
-                    if to_centre.length_squared() < nearest.length_squared() {
-                        nearest = to_centre;
+                    let squared = to_centre.length_squared();
+                    if squared < least {
+                        (nearest, least) = (to_centre, squared);
                     }
                 }
             }

@@ -4,7 +4,6 @@ use crate::data::film::Film;
 use crate::math::Vec3;
 use crate::render::bins::{Grid, TILE};
 use crate::render::resolve::Pixel;
-use rayon::prelude::*;
 use std::mem::take;
 use std::ops::Range;
 
@@ -45,7 +44,7 @@ pub(in crate::render) fn put<T>(layer: &mut [T], at: usize, value: T) {
     }
 }
 
-pub(super) fn film_rows<'a>(film: &'a mut Film, grid: &Grid) -> impl IndexedParallelIterator<Item = FilmRows<'a>> {
+pub(super) fn film_rows<'a>(film: &'a mut Film, grid: &Grid) -> Vec<FilmRows<'a>> {
     let width = film.width;
     let pixels = grid.first_row * TILE * width..((grid.first_row + grid.rows) * TILE).min(film.height) * width;
     let mut radiance = rows(&mut film.radiance, &pixels, width, grid.rows);
@@ -56,7 +55,7 @@ pub(super) fn film_rows<'a>(film: &'a mut Film, grid: &Grid) -> impl IndexedPara
     let mut normal = rows(&mut film.normal, &pixels, width, grid.rows);
     let mut guard = rows(&mut film.guard, &pixels, width, grid.rows);
     let mut undercoat = rows(&mut film.undercoat, &pixels, width, grid.rows);
-    let all: Vec<FilmRows<'a>> = (0..grid.rows)
+    (0..grid.rows)
         .map(|row| FilmRows {
             row,
             width,
@@ -69,8 +68,7 @@ pub(super) fn film_rows<'a>(film: &'a mut Film, grid: &Grid) -> impl IndexedPara
             guard: take(&mut guard[row]),
             undercoat: take(&mut undercoat[row]),
         })
-        .collect();
-    all.into_par_iter()
+        .collect()
 }
 
 /// A layer's pixels of each of `count` rows of tiles; none of a layer that the film does not have.

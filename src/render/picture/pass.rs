@@ -137,7 +137,12 @@ impl<'a> Pass<'a> {
             picture.counts.strands += band.strands.len() as u64;
 
             let start = Instant::now();
-            let [fragments, steps, ribbons_ns, march_ns, compositing_ns] = film_rows(&mut film, &grid)
+            let mut rows = film_rows(&mut film, &grid);
+            // The longest first: none is left to one thread at the end.
+            rows.sort_by_key(|rows| std::cmp::Reverse(band.bins.items_of(rows.row * grid.columns, grid.columns)));
+            let [fragments, steps, ribbons_ns, march_ns, compositing_ns] = rows
+                .into_iter()
+                .par_bridge()
                 .map(|mut rows| {
                     let mut scratch = Scratch::default();
                     let row = rows.row;
