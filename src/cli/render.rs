@@ -123,7 +123,7 @@ pub struct Render {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Quality {
-    /// One pass
+    /// One pass; thin hairs are fewer and wider
     Preview,
     /// Four passes, shorter steps
     Final,

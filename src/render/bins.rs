@@ -52,9 +52,10 @@ impl Grid {
             if reach.from[axis] > reach.to[axis] {
                 return 0..0;
             }
-            // Casts to an integer saturate; NaN becomes 0.
-            let from = at(reach.from[axis]).floor().max(0.0) as usize;
-            let to = (at(reach.to[axis]).floor() + 1.0).max(0.0) as usize;
+            // Casts to an integer cut off, and saturate; NaN becomes 0.
+            let from = at(reach.from[axis]) as usize;
+            let last = at(reach.to[axis]);
+            let to = if last >= 0.0 { (last as usize).saturating_add(1) } else { 0 };
             from.min(count)..to.min(count)
         };
         (span(0, 0, self.columns), span(1, self.first_row, self.rows))

@@ -70,7 +70,7 @@ impl Settings {
             size,
             hair_px: 0.5,
             opaque: 0.01,
-            stepping: Stepping { depth: 0.35, layers: 2.0 },
+            stepping: Stepping { depth: 0.5, layers: 2.0 },
             resolution: Resolution { subelement_px: 3.0, ..Resolution::default() },
             ..Self::default()
         }

@@ -213,6 +213,7 @@ impl Pass<'_> {
         Some(skin::look(self.pelt, self.lighting, self.normals, self.mean, triangle, b, direction, z_m))
     }
 
+    #[inline(always)]
     fn hair_face(&self, strands: &Strands, band: &Band, z_m: f32, streak: &Streak) -> Face {
         if self.settings.layers == Layers::Light {
             return Face { radiance: streak.radiance, ..Face::default() };
