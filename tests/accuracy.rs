@@ -6,7 +6,9 @@ use furrier::coat::shells::ShellParameters;
 use furrier::coat::tile::{TileHair, TileRecipe, bake, leaning};
 use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::groom::{Colour, Guard, Shape, Undercoat};
+use furrier::fur::grow;
 use furrier::math::{Mat3, Vec2, Vec3};
+use furrier::render::medium::Medium;
 use furrier::runtime::cpu::{Stack, View};
 
 const EFFORT: Effort = Effort { pixels: 128, supersampling: 2 };
@@ -104,21 +106,36 @@ fn curved_undercoat_has_the_coverage_of_its_strands() {
     holds(&table(false, Shape { bend_deg: 50.0, ..Shape::default() }, 0.0));
 }
 
+/// The same undercoat hair by hair, ray cast: what the volume stands for.
+#[test]
+fn undercoat_has_the_coverage_of_single_hairs() {
+    let fibre = Fibre::undercoat(&Undercoat::default(), &Colour::default(), 1.0);
+    let single =
+        TileHair { guard: grow::tile::grow(&fibre, 8e-3, 7), undercoat: None, ..hair(false, Shape::default()) };
+    for lean_deg in [0.0, 35.0] {
+        let tile = bake(&hair(false, Shape::default()), &recipe(lean_deg));
+        let rows = coverage_table(&single, &tile, leaning(lean_deg), Effort { pixels: 64, ..EFFORT });
+        print("single hairs ", &rows);
+        // Where single hairs stand the volume does not know: structure is not judged.
+        let rows: Vec<Row> = rows.into_iter().map(|row| Row { rmse: 0.0, ..row }).collect();
+        holds(&rows);
+    }
+}
+
 /// Mean direction of the strands in each slab, by clipping every piece, weighted by length × diameter.
 fn strand_directions(hair: &TileHair, slabs: usize) -> Vec<Vec3> {
     let slab_m = hair.height_m / slabs as f32;
     let mut sums = vec![Vec3::ZERO; slabs];
-    for strands in [&hair.guard, &hair.undercoat] {
-        let segments = strands.points_per_strand - 1;
-        for strand in 0..strands.len() {
-            for (i, pair) in strands.points_of_m(strand).windows(2).enumerate() {
-                let steps = 64;
-                for step in 0..steps {
-                    let t = (step as f32 + 0.5) / steps as f32;
-                    let diameter = strands.profile.radius_factor((i as f32 + t) / segments as f32);
-                    let slab = ((pair[0].lerp(pair[1], t).z / slab_m) as usize).min(slabs - 1);
-                    sums[slab] += (pair[1] - pair[0]) * diameter * strands.root_radius_m[strand];
-                }
+    let strands = &hair.guard;
+    let segments = strands.points_per_strand - 1;
+    for strand in 0..strands.len() {
+        for (i, pair) in strands.points_of_m(strand).windows(2).enumerate() {
+            let steps = 64;
+            for step in 0..steps {
+                let t = (step as f32 + 0.5) / steps as f32;
+                let diameter = strands.profile.radius_factor((i as f32 + t) / segments as f32);
+                let slab = ((pair[0].lerp(pair[1], t).z / slab_m) as usize).min(slabs - 1);
+                sums[slab] += (pair[1] - pair[0]) * diameter * strands.root_radius_m[strand];
             }
         }
     }
@@ -143,13 +160,11 @@ fn worst_tangent_deg(hair: &TileHair, lean_deg: f32, fault: Mat3) -> f32 {
 
 #[test]
 fn mean_tangents_are_those_of_the_strands() {
-    for guard in [true, false] {
-        for (lean_deg, bend_deg) in [(0.0, 0.0), (35.0, 0.0), (0.0, 50.0)] {
-            let hair = hair(guard, Shape { bend_deg, ..Shape::default() });
-            let worst = worst_tangent_deg(&hair, lean_deg, Mat3::IDENTITY);
-            println!("guard {guard} lean {lean_deg} bend {bend_deg}: worst mean tangent {worst:.2}°");
-            assert!(worst <= 3.0, "{worst}°");
-        }
+    for (lean_deg, bend_deg) in [(0.0, 0.0), (35.0, 0.0), (0.0, 50.0)] {
+        let hair = hair(true, Shape { bend_deg, ..Shape::default() });
+        let worst = worst_tangent_deg(&hair, lean_deg, Mat3::IDENTITY);
+        println!("lean {lean_deg} bend {bend_deg}: worst mean tangent {worst:.2}°");
+        assert!(worst <= 3.0, "{worst}°");
     }
     let straight = hair(true, Shape::default());
     let swapped = worst_tangent_deg(&straight, 0.0, Mat3::from_rotation_y(0.08));

@@ -8,6 +8,7 @@ use crate::pelt_twins::share_alike;
 use furrier::data::image::Image8;
 use furrier::math::Vec3;
 use furrier::metrics::compare::compare;
+use furrier::render::DepthRange;
 use furrier::shade::kajiya_kay::KajiyaKay;
 
 fn breaches_of(path: &str, text: &str) -> Vec<String> {
@@ -84,11 +85,10 @@ fn one_percent_of_depth_tells_hair_a_fortieth_thicker() {
     for direction in crate::undercoat::directions() {
         let hairs = crate::undercoat::scaled(DVec3::Z, direction);
         let thicker = crate::undercoat::Cylinders { diameter_m: 1.025 * hairs.diameter_m, ..hairs };
-        let (a, b) = (
-            crate::undercoat::depth_of_volume(&hairs, direction),
-            crate::undercoat::depth_of_volume(&thicker, direction),
-        );
-        assert!((b - a).abs() > 0.01 * a, "{a} and {b} along {direction}");
+        for depth in [crate::undercoat::depth_of_volume, crate::undercoat::depth_of_square] {
+            let (a, b) = (depth(&hairs, direction), depth(&thicker, direction));
+            assert!((b - a).abs() > 0.01 * a, "{a} and {b} along {direction}");
+        }
     }
 }
 
@@ -154,6 +154,17 @@ fn the_golden_ball_tells_small_changes() {
     shifted.colour.rotate_right(1);
     shifted.alpha.rotate_right(1);
     assert!(!like_golden(&of(shifted)));
+}
+
+#[test]
+fn a_pattern_that_does_not_wrap_and_a_slab_left_out_show() {
+    let hair = crate::squares::hair();
+    let open = furrier::fur::undercoat::Undercoat::new(&hair, Some(Default::default()));
+    assert!(crate::squares::torn(&open) > 0.5);
+    let film = crate::squares::film(DepthRange::ALL);
+    let half = crate::squares::film(DepthRange { far_m: crate::squares::MIDDLE_M, ..DepthRange::ALL });
+    assert_eq!(crate::squares::farthest(&film, &film), 0.0);
+    assert!(crate::squares::farthest(&film, &half) > 0.02);
 }
 
 #[test]

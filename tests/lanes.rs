@@ -95,7 +95,7 @@ impl Work for Noise<'_> {
         for some in self.0.chunks(I::LANES) {
             let mut row = Vec3Row::default();
             some.iter().enumerate().for_each(|(lane, &p)| row.set(lane, p));
-            out.extend(&simplex_lanes(Vec3s::<I>::of(&row), 3).row().0[..some.len()]);
+            out.extend(&simplex_lanes(Vec3s::<I>::of(&row), 3, None).row().0[..some.len()]);
         }
         out
     }

@@ -44,6 +44,7 @@ mod shaders;
 mod shadows;
 mod silhouette;
 mod sphere;
+mod squares;
 mod strand_files;
 mod summary;
 mod sweeps;

@@ -33,7 +33,7 @@ fn seams_of_real_coats_show_no_more_than_chance() {
             // Planted: hair that stands along the texture, so otherwise on each side of a seam.
             if file == "bunny_closed_6k6.glb" {
                 let seams = look(&mesh, &offset, &vec![Vec3::ZERO; comb.len()], &patches, &tile);
-                assert!(seams.difference > 1.2, "hair along the texture passes: {seams:?}");
+                assert!(seams.difference > 1.1, "hair along the texture passes: {seams:?}");
             }
         }
     }

@@ -7,10 +7,13 @@ use furrier::data::strands::Profile;
 use furrier::fur::groom::Shape;
 use furrier::fur::groom::fibre::Fibre;
 use furrier::math::hash::Stream;
-use furrier::math::{DVec2, DVec3, Vec3};
+use furrier::math::{DVec2, DVec3, Mat3, Vec3};
+use furrier::render::DepthRange;
 use furrier::render::march::volume::{Resolution, Volume};
 use furrier::render::march::{Start, Stepping};
+use furrier::render::medium::Medium;
 use furrier::render::pelt::{Hair, Pelt};
+use furrier::render::rays::Ray;
 use furrier::render::shell::prism::Place;
 use furrier::render::shell::subelement;
 
@@ -95,6 +98,18 @@ pub fn level(edge_m: f32) -> Mesh {
     pelts::grid(8, 8, |u, v| Vec3::new(u - 0.5, v - 0.5, 0.0) * edge_m)
 }
 
+/// Hair like the cylinders.
+fn fibre(hairs: &Cylinders) -> Fibre {
+    Fibre {
+        density_per_m2: hairs.per_m2 as f32,
+        length_m: hairs.length_m as f32,
+        radius_m: (0.5 * hairs.diameter_m) as f32,
+        shape: Shape { length_variation: 0.0, jitter_deg: 0.0, ..Shape::default() },
+        profile: Profile { taper: 1.0, ramp: [Vec3::ONE; 3], tip_transparency: 0.0, tip_exponent: 1.0 },
+        variation: 0.0,
+    }
+}
+
 /// A level pelt of undercoat like the cylinders.
 pub fn on_level_skin<T>(hairs: &Cylinders, with: impl FnOnce(&Pelt<'_>) -> T) -> T {
     let mesh = level((hairs.length_m * 60.0) as f32);
@@ -107,14 +122,7 @@ pub fn on_level_skin<T>(hairs: &Cylinders, with: impl FnOnce(&Pelt<'_>) -> T) ->
         clump: vec![0.0; n],
         tint: vec![Vec3::ONE; n],
     };
-    let fibre = Fibre {
-        density_per_m2: hairs.per_m2 as f32,
-        length_m: hairs.length_m as f32,
-        radius_m: (0.5 * hairs.diameter_m) as f32,
-        shape: Shape { length_variation: 0.0, jitter_deg: 0.0, ..Shape::default() },
-        profile: Profile { taper: 1.0, ramp: [Vec3::ONE; 3], tip_transparency: 0.0, tip_exponent: 1.0 },
-        variation: 0.0,
-    };
+    let fibre = fibre(hairs);
     with(&Pelt {
         skin: &mesh,
         fields: &fields,
@@ -128,6 +136,16 @@ pub fn on_level_skin<T>(hairs: &Cylinders, with: impl FnOnce(&Pelt<'_>) -> T) ->
 /// Optical depth of the volume that stands for the cylinders, along a ray through the middle of its top.
 pub fn depth_of_volume(hairs: &Cylinders, direction: DVec3) -> f64 {
     on_level_skin(hairs, |pelt| depth_of_pelt(pelt, direction))
+}
+
+/// The same of a square's undercoat, as a tile has it.
+pub fn depth_of_square(hairs: &Cylinders, direction: DVec3) -> f64 {
+    let lean = hairs.lean.as_vec3();
+    let worn = Mat3::from_cols(Vec3::X, Vec3::Y, lean);
+    let medium = Medium::new(&fibre(hairs), None, (4.0 * hairs.length_m) as f32).unwrap().worn(worn);
+    let origin_m = lean * hairs.length_m as f32 + Vec3::Z * 1e-6;
+    let ray = Ray { origin_m, direction: direction.as_vec3() };
+    f64::from(medium.depth_along(&ray, DepthRange::ALL, f32::INFINITY))
 }
 
 fn depth_of_pelt(pelt: &Pelt<'_>, direction: DVec3) -> f64 {
@@ -170,8 +188,10 @@ fn agree(lean: DVec3) {
         // Enough hairs in all for a standard error of 0.3 %.
         let seeds = (16_000.0 / (hairs.per_m2 * hairs.edge_m() * hairs.edge_m())).ceil();
         let mean = (0..seeds as u64).map(|seed| transmittance_of_rays(&hairs, direction, seed)).sum::<f64>() / seeds;
-        let (rays, volume) = (-mean.ln(), depth_of_volume(&hairs, direction));
-        assert!((rays - volume).abs() < 0.01 * rays, "along {direction}: {rays} by rays, {volume} by the volume");
+        let rays = -mean.ln();
+        let volumes = [depth_of_volume(&hairs, direction), depth_of_square(&hairs, direction)];
+        println!("along {direction:.3}: {rays:.5} by rays, {volumes:.5?} by the volumes");
+        assert!(volumes.iter().all(|v| (rays - v).abs() < 0.01 * rays), "along {direction}: {rays}, {volumes:?}");
     }
 }
 

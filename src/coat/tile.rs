@@ -3,22 +3,24 @@
 use super::fins::{FinParameters, texture};
 use super::shells::deposit::{Layout, Voxels, mean_slopes};
 use super::shells::encode::{Raw, encode};
-use super::shells::{ShellParameters, ends, gains, shadow};
+use super::shells::{ShellParameters, ends, gains, shadow, undercoat};
 use crate::data::coat::{Sampled, Tile};
 use crate::data::strands::Strands;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::grow;
+use crate::fur::undercoat::Pattern;
 use crate::math::hash::combine;
 use crate::math::{Mat3, Vec3};
 use crate::render::Scene;
+use crate::render::medium::Medium;
 
 /// The hair of a tile.
 #[derive(Clone, Debug)]
 pub struct TileHair {
     /// Guard hair.
     pub guard: Strands,
-    /// Undercoat, hair by hair.
-    pub undercoat: Strands,
+    /// Undercoat.
+    pub undercoat: Option<Medium>,
     /// Edge of the tile, m.
     pub edge_m: f32,
     /// Height that no hair exceeds, m.
@@ -31,32 +33,35 @@ impl TileHair {
     /// Grows both kinds on a tile with edge `edge_m`.
     pub fn grow(guard: &Fibre, undercoat: &Fibre, edge_m: f32, seed: u64) -> Self {
         let guard = grow::tile::grow(guard, edge_m, combine(seed, 1));
-        let undercoat = grow::tile::grow(undercoat, edge_m, combine(seed, 2));
-        let highest = |s: &Strands| s.points_m.iter().map(|p| p.z).fold(0.0, f32::max);
+        let undercoat = Medium::new(undercoat, Some(Pattern::default()), edge_m);
+        let highest_m = guard.points_m.iter().map(|p| p.z).fold(0.0, f32::max);
+        let top_m = undercoat.as_ref().map_or(0.0, |medium| medium.undercoat().height_m);
         // A little above the highest tip, so that no tip ends exactly on the top.
-        let height_m = highest(&guard).max(highest(&undercoat)).max(1e-6) * 1.001;
+        let height_m = highest_m.max(top_m).max(1e-6) * 1.001;
         Self { guard, undercoat, edge_m, height_m, skin_from_tile: Mat3::IDENTITY }
     }
 
     /// The same hair as a skin wears it: every point mapped by `skin_from_tile`, which must keep x and y.
     pub fn worn(&self, skin_from_tile: Mat3) -> Self {
-        let mut worn = self.clone();
-        for p in worn.guard.points_m.iter_mut().chain(&mut worn.undercoat.points_m) {
-            *p = skin_from_tile * *p;
+        let mut guard = self.guard.clone();
+        guard.points_m.iter_mut().for_each(|p| *p = skin_from_tile * *p);
+        Self {
+            guard,
+            undercoat: self.undercoat.as_ref().map(|medium| medium.worn(skin_from_tile)),
+            edge_m: self.edge_m,
+            height_m: self.height_m * skin_from_tile.z_axis.z,
+            skin_from_tile,
         }
-        worn.height_m *= skin_from_tile.z_axis.z;
-        worn.skin_from_tile = skin_from_tile;
-        worn
     }
 
     /// As a scene that repeats.
     pub fn scene(&self) -> Scene<'_> {
         Scene {
             guard: Some(&self.guard),
-            undercoat: Some(&self.undercoat),
-            skin: None,
+            medium: self.undercoat.as_ref(),
             torus_m: Some(self.edge_m),
             upright_from_world: self.skin_from_tile.inverse(),
+            ..Scene::default()
         }
     }
 }
@@ -89,13 +94,13 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
     let lean = leaning(recipe.lean_deg);
     // The textures, the fin and the truth that gains are fitted to need nothing of each other.
     let shells = || {
-        let slopes = slopes(hair, slabs);
-        let empty = Voxels::new(Layout::tile(size, slabs, hair.edge_m, hair.height_m));
-        let guard = empty.deposited(&hair.guard, &slopes, 0.0);
-        let mut kappa = ends::guard_ends(&hair.guard, &guard, &slopes);
-        let mut voxels = empty.deposited(&hair.undercoat, &slopes, undercoat_width_m(hair));
-        voxels.add(&guard);
-        ends::add_undercoat_ends(&hair.undercoat, &mut kappa, &voxels.layout);
+        let slopes = mean_slopes(&hair.guard, slabs, hair.height_m);
+        let layout = Layout::tile(size, slabs, hair.edge_m, hair.height_m);
+        let mut voxels = Voxels::deposited(layout, &hair.guard, &slopes);
+        let mut kappa = ends::guard_ends(&hair.guard, &voxels, &slopes);
+        if let Some(medium) = &hair.undercoat {
+            undercoat::add(medium, &slopes, &mut voxels, &mut kappa);
+        }
         let (transmittance, skin_transmittance) = shadow::transmittance(&voxels, &kappa);
         let shells = encode(&Raw {
             voxels: &voxels,
@@ -124,17 +129,6 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
     };
     tile.shells.gains = gains::fit(&tile, &truth, lean);
     tile
-}
-
-/// Slope of the mean guard hair per slab; of the undercoat where there is no guard hair.
-pub(super) fn slopes(hair: &TileHair, slabs: usize) -> Vec<crate::math::Vec2> {
-    let strands = if hair.guard.is_empty() { &hair.undercoat } else { &hair.guard };
-    mean_slopes(strands, slabs, hair.height_m)
-}
-
-/// Undercoat is a density, not hairs: each is spread over half again the mean distance to its neighbours.
-fn undercoat_width_m(hair: &TileHair) -> f32 {
-    1.5 * hair.edge_m / (hair.undercoat.len().max(1) as f32).sqrt()
 }
 
 /// Mean of the values of each slab.

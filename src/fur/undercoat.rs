@@ -1,7 +1,7 @@
 //! Undercoat as a density over the shell: how many hairs reach a height, how they crowd, how they block a ray
 //! (`docs/steps/march.md`).
 
-use super::groom::clump::Nearby;
+use super::groom::clump::{Grid, Nearby};
 use super::groom::fibre::{Fibre, LENGTH_SPREAD};
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, Mask, Scalar, Vec3s};
@@ -34,6 +34,8 @@ pub struct Columns<I: Isa> {
     strength: F32s<I>,
     /// The q at which hair would come from beyond the clump's cell.
     wall: F32s<I>,
+    /// Wavelengths after which the pattern repeats.
+    waves: Option<f32>,
 }
 
 impl Columns<Scalar> {
@@ -50,7 +52,7 @@ impl<I: Isa> Columns<I> {
         let one = F32s::splat(1.0);
         let mut factor = one;
         if self.amplitude > 0.0 {
-            factor = factor + simplex_lanes(self.at + self.blur * t, 0) * self.amplitude;
+            factor = factor + simplex_lanes(self.at + self.blur * t, 0, self.waves) * self.amplitude;
         }
         let pull = (t * t.sqrt() * self.strength).min(F32s::splat(0.9));
         let q = one / (one - pull);
@@ -77,6 +79,8 @@ pub struct Undercoat {
     spread: f32,
     /// Mean distance between clumps, m.
     pub clump_spacing_m: f32,
+    /// Edge of the square that it repeats on along x and y, m; none on a skin.
+    torus_m: Option<f32>,
     /// How far tips move towards their clump's centre, in [0, 1].
     pub clump_strength: f32,
 }
@@ -98,8 +102,19 @@ impl Undercoat {
             mean,
             spread: mean * variation,
             clump_spacing_m: spacing_m,
+            torus_m: None,
             clump_strength: fibre.shape.clump.strength,
         }
+    }
+
+    /// The same hair on a square that repeats after `edge_m`: clumps become a whole part of it wide, and three wavelengths of the
+    /// pattern too (what [`simplex_lanes`] asks for).
+    pub fn on_torus(mut self, edge_m: f32) -> Self {
+        let threes = (edge_m / (3.0 * self.wavelength_m())).round().max(1.0);
+        self.clump_spacing_m = Grid::on_torus(self.clump_spacing_m, edge_m).spacing_m;
+        self.pattern.wavelength = edge_m / (3.0 * threes) / self.clump_spacing_m;
+        self.torus_m = Some(edge_m);
+        self
     }
 
     /// Share of the hairs that reach height `t`: lengths are normally distributed.
@@ -108,7 +123,7 @@ impl Undercoat {
             return 0.0;
         }
         if self.spread < 1e-6 {
-            return f32::from(u8::from(t < self.mean));
+            return f32::from(u8::from(t <= self.mean));
         }
         0.5 * libm::erfcf((t - self.mean) / (self.spread * std::f32::consts::SQRT_2))
     }
@@ -150,16 +165,20 @@ impl Undercoat {
             blur: Vec3s::all(0.0),
             strength: clump_factor * self.clump_strength,
             wall: F32s::splat(f32::INFINITY),
+            waves: self.torus_m.map(|edge_m| (edge_m / self.wavelength_m()).round()),
         };
         if columns.amplitude > 0.0 {
             columns.at = root_m.over(F32s::splat(self.wavelength_m()));
             // A fine noise moves the coarse one about, more towards the tips.
             let fine = columns.at * F32s::splat(4.0);
-            let (a, b) = (simplex_lanes(fine, 1), simplex_lanes(fine, 2));
+            let waves = columns.waves.map(|waves| 4.0 * waves);
+            let (a, b) = (simplex_lanes(fine, 1, waves), simplex_lanes(fine, 2, waves));
             columns.blur = Vec3s::new(a, b, -a) * F32s::splat(self.pattern.jitter);
         }
         let mut waiting = columns.strength.gt(F32s::splat(1e-3)).bits();
         if waiting != 0 {
+            let period = self.torus_m.map(|edge_m| (edge_m / self.clump_spacing_m).round());
+            let grid = Grid { spacing_m: self.clump_spacing_m, period };
             let over = root_m.over(F32s::splat(self.clump_spacing_m));
             let homes = Vec3s::new(over.x.floor(), over.y.floor(), over.z.floor()).rows();
             // Points close by mostly share their cell.
@@ -169,7 +188,7 @@ impl Undercoat {
                 for lane in first + 1..I::LANES {
                     here |= u32::from(homes.lane(lane) == homes.lane(first)) << lane;
                 }
-                let centres_m = nearby.centres_m(homes.lane(first), self.clump_spacing_m, 0);
+                let centres_m = nearby.centres_m(homes.lane(first), &grid);
                 let found = walls(centres_m, root_m, normal);
                 columns.wall = Mask::from_bits(here & waiting).select(found, columns.wall);
                 waiting &= !here;

@@ -43,9 +43,9 @@ fn gradient(corner: Vec3, seed: u32) -> Vec3 {
     }
 }
 
-/// [`simplex`] in lanes; the same bits.
+/// [`simplex`] in lanes; the same bits. Where `period` is given, a multiple of 3, the noise repeats after it along x and along y.
 #[inline(always)]
-pub fn simplex_lanes<I: Isa>(p: Vec3s<I>, seed: u32) -> F32s<I> {
+pub fn simplex_lanes<I: Isa>(p: Vec3s<I>, seed: u32, period: Option<f32>) -> F32s<I> {
     let skew = (p.x + p.y + p.z) * (1.0 / 3.0);
     let cell = Vec3s::new((p.x + skew).floor(), (p.y + skew).floor(), (p.z + skew).floor());
     let unskew = (cell.x + cell.y + cell.z) * (1.0 / 6.0);
@@ -59,10 +59,21 @@ pub fn simplex_lanes<I: Isa>(p: Vec3s<I>, seed: u32) -> F32s<I> {
     for (corner, unskew) in [(Vec3s::all(0.0), 0.0), (first, 1.0 / 6.0), (second, 1.0 / 3.0), (Vec3s::all(1.0), 0.5)] {
         let d = (x0 - corner).plus(F32s::splat(unskew));
         let fall = F32s::splat(0.6) - d.dot(d);
-        let term = fall * fall * fall * fall * d.dot(gradient_lanes(cell + corner, seed));
+        let corner = period.map_or(cell + corner, |period| wrapped(cell + corner, period));
+        let term = fall * fall * fall * fall * d.dot(gradient_lanes(corner, seed));
         sum = sum + fall.gt(F32s::splat(0.0)).keep(term);
     }
     sum * 32.0
+}
+
+/// The same corners with 0 ≤ x, y < `period` (Gustavson and McEwan 2022, "Tiling simplex noise and flow noise"): corner c
+/// lies at c − Σc/6, so that a period along x is a step of (4, 1, 1)/3 periods from corner to corner.
+#[inline(always)]
+fn wrapped<I: Isa>(corner: Vec3s<I>, period: f32) -> Vec3s<I> {
+    let sum = corner.x + corner.y + corner.z;
+    let steps = |c: F32s<I>| ((c * 6.0 - sum) / F32s::splat(6.0 * period)).floor() * (period / 3.0);
+    let (x, y) = (steps(corner.x), steps(corner.y));
+    Vec3s::new(corner.x - x * 4.0 - y, corner.y - x - y * 4.0, corner.z - x - y)
 }
 
 #[inline(always)]

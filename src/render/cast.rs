@@ -1,9 +1,11 @@
 //! Renders single hairs by casting rays through a hierarchy of their pieces: every crossing found, sorted by (depth,
-//! id), composited front to back. Slow and plain, with no resolution of its own.
+//! id), composited front to back with the volume between them. Slow and plain, with no resolution of its own.
 
 use super::bvh::Bvh;
+use super::medium::{Medium, Step};
 use super::pieces::{self, Piece};
 use super::rays::{Ray, Rays};
+use super::seen::Seen;
 use super::{DepthRange, Scene};
 use crate::data::film::Film;
 use crate::data::strands::Strands;
@@ -17,11 +19,23 @@ const OPAQUE: f32 = 1e-4;
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
     depth_m: f32,
+    /// Where it leaves it.
+    leave_m: f32,
     alpha: f32,
     /// Index of the piece.
     piece: u32,
     /// Where along the hair, in [0, 1].
     s: f32,
+}
+
+/// Optical depth at which nothing behind can be seen.
+const OPAQUE_DEPTH: f32 = 9.2;
+
+/// What a ray meets: lists that a thread keeps for their memory.
+#[derive(Debug, Default)]
+struct Met {
+    crossings: Vec<Crossing>,
+    steps: Vec<Step>,
 }
 
 /// Where a search for crossings may end.
@@ -31,25 +45,6 @@ enum Stop {
     NearestOpaque,
     /// Once anything is opaque, nothing else matters.
     AnyOpaque,
-}
-
-/// What one ray sees; colour-like values are premultiplied by alpha.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Seen {
-    /// 1 − transmittance.
-    pub alpha: f32,
-    /// Part of alpha from guard hair.
-    pub guard: f32,
-    /// Part of alpha from undercoat.
-    pub undercoat: f32,
-    /// Depth × alpha, m.
-    pub depth_m: f32,
-    /// Colour × alpha.
-    pub albedo: Vec3,
-    /// Hair direction × alpha.
-    pub tangent: Vec3,
-    /// Skin normal × alpha.
-    pub normal: Vec3,
 }
 
 /// A scene made ready for rays.
@@ -72,26 +67,20 @@ impl<'a> Caster<'a> {
         let per_pixel = rays.per_pixel();
         let rows: Vec<Vec<Seen>> = (0..height)
             .into_par_iter()
-            .map_init(Vec::new, |crossings, y| {
-                let pixel = |x: usize, crossings: &mut Vec<Crossing>| {
+            .map_init(Met::default, |met, y| {
+                let pixel = |x: usize, met: &mut Met| {
                     let mut sum = Seen::default();
                     for sample in 0..per_pixel {
-                        sum.add(&self.look(&rays.ray(x, y, sample), range, crossings));
+                        sum.add(&self.look(&rays.ray(x, y, sample), range, met));
                     }
                     sum.scaled(1.0 / per_pixel as f32)
                 };
-                (0..width).map(|x| pixel(x, crossings)).collect()
+                (0..width).map(|x| pixel(x, met)).collect()
             })
             .collect();
         let mut film = Film::new(width, height);
         for (i, seen) in rows.into_iter().flatten().enumerate() {
-            film.alpha[i] = seen.alpha;
-            film.depth_m[i] = if seen.alpha > 0.0 { seen.depth_m / seen.alpha } else { 0.0 };
-            film.albedo[i] = seen.albedo;
-            film.tangent[i] = seen.tangent;
-            film.normal[i] = seen.normal;
-            film.guard[i] = seen.guard;
-            film.undercoat[i] = seen.undercoat;
+            seen.into_film(&mut film, i);
         }
         film
     }
@@ -108,13 +97,17 @@ impl<'a> Caster<'a> {
     }
 
     fn through(&self, ray: &Ray, range: DepthRange, crossings: &mut Vec<Crossing>) -> f32 {
+        let depth = self.scene.medium.map_or(0.0, |medium| medium.depth_along(ray, range, OPAQUE_DEPTH));
+        if depth >= OPAQUE_DEPTH {
+            return 0.0;
+        }
         crossings.clear();
         self.collect(ray, range, Stop::AnyOpaque, crossings);
         if crossings.iter().any(|c| c.alpha >= 1.0) {
             return 0.0;
         }
         self.sort(crossings);
-        let mut through = 1.0;
+        let mut through = libm::expf(-depth);
         let mut last = None;
         for crossing in crossings.iter().filter(|c| !self.same_hair(&mut last, c)) {
             through *= 1.0 - crossing.alpha;
@@ -122,19 +115,80 @@ impl<'a> Caster<'a> {
         through
     }
 
-    fn look(&self, ray: &Ray, range: DepthRange, crossings: &mut Vec<Crossing>) -> Seen {
+    /// Share of each pixel's rays that single hairs are the first to block before each of the rising distances `ends_m`, and
+    /// not before the one before it: `[pixel][distance]`. A hair counts in each interval that it is met in, as far as what is before
+    /// lets it be seen.
+    pub fn first_blocked(&self, rays: &Rays<'_>, ends_m: &[f32]) -> Vec<f32> {
+        let [width, height] = rays.size();
+        let range = DepthRange { near_m: 0.0, far_m: ends_m.last().copied().unwrap_or(0.0) };
+        let share = 1.0 / rays.per_pixel() as f32;
+        let row = |(all, parts): &mut (Vec<Crossing>, Vec<Crossing>), y: usize| {
+            let mut blocked = vec![0.0; width * ends_m.len()];
+            for i in 0..width * rays.per_pixel() {
+                let (x, sample) = (i / rays.per_pixel(), i % rays.per_pixel());
+                all.clear();
+                self.collect(&rays.ray(x, y, sample), range, Stop::NearestOpaque, all);
+                let (mut through, mut near_m) = (1.0, 0.0);
+                for (blocked, &end_m) in blocked[x * ends_m.len()..].iter_mut().zip(ends_m) {
+                    let inside = all.iter().filter(|c| c.leave_m > near_m && c.depth_m <= end_m);
+                    parts.clear();
+                    parts.extend(inside.map(|c| Crossing { depth_m: c.depth_m.max(near_m), ..*c }));
+                    self.sort(parts);
+                    let before = through;
+                    let mut last = None;
+                    for part in parts.iter().filter(|part| !self.same_hair(&mut last, part)) {
+                        through *= 1.0 - part.alpha;
+                    }
+                    *blocked += (before - through) * share;
+                    near_m = end_m;
+                }
+            }
+            blocked
+        };
+        let rows: Vec<Vec<f32>> = (0..height).into_par_iter().map_init(Default::default, row).collect();
+        rows.concat()
+    }
+
+    fn look(&self, ray: &Ray, mut range: DepthRange, met: &mut Met) -> Seen {
+        let Met { crossings, steps } = met;
         crossings.clear();
+        steps.clear();
+        if let Some(medium) = self.scene.medium {
+            let mut depth = 0.0;
+            medium.walk(ray, range, |step| {
+                steps.push(step);
+                depth += step.depth;
+                depth < OPAQUE_DEPTH
+            });
+            if depth >= OPAQUE_DEPTH {
+                range.far_m = steps.last().map_or(range.far_m, |step| step.to_m);
+            }
+        }
         self.collect(ray, range, Stop::NearestOpaque, crossings);
         self.sort(crossings);
         let mut seen = Seen::default();
         let mut through = 1.0_f32;
         let mut last = None;
-        for crossing in crossings.iter() {
+        let mut steps = steps.iter().copied().peekable();
+        for crossing in crossings.iter().map(Some).chain([None]) {
+            let at_m = crossing.map_or(f32::INFINITY, |crossing| crossing.depth_m);
+            while let (Some(step), Some(medium)) = (steps.peek_mut(), self.scene.medium) {
+                if step.from_m >= at_m {
+                    break;
+                }
+                let before = step.before(at_m);
+                let clear = libm::expf(-before.depth);
+                shade_step(medium, &before, through * (1.0 - clear), &mut seen);
+                through *= clear;
+                if before.to_m < at_m {
+                    steps.next();
+                }
+            }
+            let Some(crossing) = crossing else { break };
             if self.same_hair(&mut last, crossing) {
                 continue;
             }
-            let weight = through * crossing.alpha;
-            self.shade(crossing, weight, &mut seen);
+            self.shade(crossing, through * crossing.alpha, &mut seen);
             through *= 1.0 - crossing.alpha;
             if through < OPAQUE {
                 through = 0.0;
@@ -196,7 +250,9 @@ impl<'a> Caster<'a> {
         // The images of the tile that the ray passes over, nearest first.
         let upright = self.scene.upright_from_world;
         let (start, step) = (upright * ray.origin_m, upright * ray.direction);
-        let ends = [start + step * range.near_m, start + step * range.far_m];
+        // Nothing is met above or below all hair.
+        let [down, up] = [low.z, high.z].map(|z| if step.z == 0.0 { f32::NAN } else { (z - start.z) / step.z });
+        let ends = [range.near_m.max(down.min(up)), range.far_m.min(down.max(up))].map(|at_m| start + step * at_m);
         let span = |axis: usize| {
             let (a, b) = (ends[0][axis].min(ends[1][axis]), ends[0][axis].max(ends[1][axis]));
             let first = ((a - high[axis]) / edge).ceil() as i32;
@@ -240,6 +296,7 @@ impl<'a> Caster<'a> {
             let depth_m = triangle_depth(self.scene.skin?.corners_m(piece.index as usize), ray)?;
             return (near_m..=far_m).contains(&depth_m).then_some(Crossing {
                 depth_m,
+                leave_m: depth_m,
                 alpha: 1.0,
                 piece: item,
                 s: 0.0,
@@ -247,32 +304,22 @@ impl<'a> Caster<'a> {
         };
         let hit = piece.cone.hit(ray, near_m, far_m)?;
         let s = piece.span[0] + (piece.span[1] - piece.span[0]) * hit.s;
-        Some(Crossing { depth_m: hit.depth_m, alpha: strands.profile.opacity_at(s), piece: item, s })
+        Some(Crossing {
+            depth_m: hit.depth_m,
+            leave_m: hit.leave_m,
+            alpha: strands.profile.opacity_at(s),
+            piece: item,
+            s,
+        })
     }
 }
 
-impl Seen {
-    fn add(&mut self, other: &Self) {
-        self.alpha += other.alpha;
-        self.guard += other.guard;
-        self.undercoat += other.undercoat;
-        self.depth_m += other.depth_m;
-        self.albedo += other.albedo;
-        self.tangent += other.tangent;
-        self.normal += other.normal;
-    }
-
-    fn scaled(self, f: f32) -> Self {
-        Self {
-            alpha: self.alpha * f,
-            guard: self.guard * f,
-            undercoat: self.undercoat * f,
-            depth_m: self.depth_m * f,
-            albedo: self.albedo * f,
-            tangent: self.tangent * f,
-            normal: self.normal * f,
-        }
-    }
+/// Adds what is seen of a volume's step.
+fn shade_step(medium: &Medium, step: &Step, weight: f32, seen: &mut Seen) {
+    seen.depth_m += weight * step.middle_m();
+    seen.albedo += weight * medium.colour(step.t);
+    seen.tangent += weight * medium.hair();
+    seen.undercoat += weight;
 }
 
 /// Distance at which a ray meets a triangle from either side (Möller and Trumbore 1997).

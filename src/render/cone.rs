@@ -21,6 +21,8 @@ pub struct Cone {
 pub struct Hit {
     /// Distance to the first contact within the depth range, m.
     pub depth_m: f32,
+    /// Distance to the last one on the whole ray, m.
+    pub leave_m: f32,
     /// Where along the piece, in [0, 1].
     pub s: f32,
 }
@@ -54,7 +56,7 @@ impl Cone {
         let depth_m = enter.max(near_m);
         // The place along the hair: where its axis passes that depth, kept inside the interval that is met.
         let s = if dt.abs() > 1e-12 { ((depth_m - t0) / dt).clamp(low, high) } else { 0.5 * (low + high) };
-        Some(Hit { depth_m, s })
+        Some(Hit { depth_m, leave_m: leave, s })
     }
 
     /// Lowest and highest corner.

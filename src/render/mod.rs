@@ -12,12 +12,14 @@ pub mod flat;
 pub mod gpu;
 pub mod march;
 pub mod mean;
+pub mod medium;
 pub mod pelt;
 pub mod picture;
 pub mod pieces;
 pub mod rays;
 pub mod reference;
 pub mod resolve;
+pub mod seen;
 pub mod shell;
 pub mod skin;
 pub mod strands;
@@ -27,6 +29,7 @@ pub mod view;
 use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;
 use crate::math::Mat3;
+use medium::Medium;
 
 /// What is rendered.
 #[derive(Clone, Copy, Debug, Default)]
@@ -35,6 +38,8 @@ pub struct Scene<'a> {
     pub guard: Option<&'a Strands>,
     /// Undercoat as single hairs.
     pub undercoat: Option<&'a Strands>,
+    /// Undercoat as a volume.
+    pub medium: Option<&'a Medium>,
     /// The opaque skin.
     pub skin: Option<&'a Mesh>,
     /// Edge of a tile that repeats along x and y, m; none for a scene that does not repeat.

@@ -9,8 +9,11 @@ use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::grow;
+use crate::fur::undercoat::{Columns, Pattern, Undercoat};
 use crate::math::hash::{combine, unit_f32};
-use crate::math::{Mat3, Vec3};
+use crate::math::lanes::Scalar;
+use crate::math::{Mat3, Vec2, Vec3};
+use crate::render::medium::Medium;
 
 /// Places whose hair stands side by side in the texture.
 const PLACES: usize = 8;
@@ -40,15 +43,28 @@ pub fn grown(skins: &[Skin<'_>], hair: [&Fibre; 2], like: &TileHair, seed: u64) 
         found.extend(places(skin.mesh, wanted, combine(skin.seed, 0xf1), furred).into_iter().map(|at| (skin, at)));
     }
     let count = found.len();
-    let mut all = TileHair { guard: empty(&like.guard), undercoat: empty(&like.undercoat), ..like.clone() };
-    for (i, (skin, (triangle, b))) in found.into_iter().enumerate() {
-        let key = combine(seed, i as u64);
-        let strip = Strip::new(skin, triangle, b, like.edge_m, count, unit_f32(combine(key, 0)));
-        for (kind, (fibre, strands)) in hair.into_iter().zip([&mut all.guard, &mut all.undercoat]).enumerate() {
-            strip.grow(fibre, combine(key, kind as u64 + 1), i, strands);
-        }
+    if count == 0 {
+        return None;
     }
-    (count > 0).then_some(all)
+    let key = |i: usize| combine(seed, i as u64);
+    let strips: Vec<Strip> = found
+        .into_iter()
+        .enumerate()
+        .map(|(i, (skin, (triangle, b)))| {
+            Strip::new(skin, triangle, b, like.edge_m, count, unit_f32(combine(key(i), 0)))
+        })
+        .collect();
+    let [guard, undercoat] = hair;
+    let mut all = TileHair { guard: empty(&like.guard), ..like.clone() };
+    for (i, strip) in strips.iter().enumerate() {
+        strip.grow(guard, combine(key(i), 1), i, &mut all.guard);
+    }
+    let of_skin = Undercoat::new(undercoat, Some(Pattern::default()));
+    all.undercoat = Medium::of_columns(of_skin, undercoat, like.edge_m, |at| {
+        let place = ((at.x / like.edge_m * count as f32) as usize).min(count - 1);
+        strips[place].column(&of_skin, at, place)
+    });
+    Some(all)
 }
 
 fn empty(like: &Strands) -> Strands {
@@ -111,7 +127,14 @@ impl Strip {
         }
     }
 
-    /// Adds the hair of one kind, as the strip with number `place`.
+    /// How undercoat crowds at a point of the texture's square, where this is the strip with number `place`.
+    fn column(&self, undercoat: &Undercoat, at: Vec2, place: usize) -> Columns<Scalar> {
+        let (x, y) = (self.world_from_fin.x_axis, self.world_from_fin.y_axis);
+        let root_m = self.mesh.positions_m[0] + x * (at.x - place as f32 * self.width_m) + y * at.y;
+        undercoat.column(root_m, self.mesh.normals[0], self.fields.clump[0])
+    }
+
+    /// Adds guard hair, as the strip with number `place`.
     fn grow(&self, fibre: &Fibre, seed: u64, place: usize, all: &mut Strands) {
         let Self { mesh, fields, world_from_fin, width_m } = self;
         let corner = mesh.positions_m[0];

@@ -3,14 +3,16 @@
 
 pub mod fins;
 pub mod flatten;
+mod ground;
 pub mod judge;
 pub mod skirt;
 
 use crate::coat::fins::texture;
-use crate::coat::shells::deposit::{Layout, Voxels};
+use crate::coat::shells::deposit::{Layout, Voxels, mean_slopes};
 use crate::coat::shells::encode::{Raw, encode};
+use crate::coat::shells::undercoat::{self, Profile};
 use crate::coat::shells::{ends, gains, shadow};
-use crate::coat::tile::{TileHair, TileRecipe, leaning, slab_means, slopes};
+use crate::coat::tile::{TileHair, TileRecipe, leaning, slab_means};
 use crate::data::coat::{Sampled, Tile};
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
@@ -19,14 +21,16 @@ use crate::data::strands::Strands;
 use crate::data::topology::Topology;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::grow;
+use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::Vec2;
 use crate::math::hash::combine;
 use flatten::{by_triangle, flatten};
+use ground::Ground;
 use rayon::prelude::*;
 use skirt::Region;
 use std::ops::Range;
 
-/// Hairs of each kind over a texel that are more than it can tell apart: from here on one stands for several.
+/// Guard hairs over a texel that are more than it can tell apart: from here on one stands for several.
 const MOST_PER_TEXEL: f32 = 8.0;
 /// Furthest that hair from around a chart is looked for, texels.
 const FURTHEST: f32 = 32.0;
@@ -50,8 +54,8 @@ pub struct Skin<'a> {
     pub seed: u64,
 }
 
-/// One kind of hair, thinned so that there are not many more hairs than texels.
-struct Kind {
+/// Guard hair, thinned so that there are not many more hairs than texels.
+struct Thinned {
     fibre: Fibre,
     /// Hairs that one stands for.
     thinning: f32,
@@ -59,16 +63,22 @@ struct Kind {
     width_m: f32,
 }
 
-impl Kind {
-    /// `spread`: how much of the mean distance between hairs each is spread over, even if it is not thinned.
-    fn new(fibre: &Fibre, texel_m: f32, spread: Option<f32>) -> Self {
+impl Thinned {
+    fn new(fibre: &Fibre, texel_m: f32) -> Self {
         let thinning = (fibre.density_per_m2 * texel_m * texel_m / MOST_PER_TEXEL).max(1.0);
         let mut fibre = *fibre;
         fibre.density_per_m2 /= thinning;
         fibre.radius_m *= thinning;
         let distance_m = 1.0 / fibre.density_per_m2.max(1e-6).sqrt();
-        let spread = spread.or((thinning > 1.0).then_some(1.0)).unwrap_or(0.0);
-        Self { fibre, thinning, width_m: spread * distance_m }
+        Self { fibre, thinning, width_m: if thinning > 1.0 { distance_m } else { 0.0 } }
+    }
+
+    /// Voxels of it, and what its ends add.
+    fn deposit(&self, layout: Layout, strands: &Strands, slopes: &[Vec2]) -> (Voxels, Vec<f32>) {
+        let mut voxels = Voxels::new(layout);
+        let mut ends = vec![0.0; layout.texels() * layout.slabs];
+        ends::deposit_with_ends(strands, slopes, (self.width_m, self.thinning), &mut voxels, &mut ends);
+        (voxels, ends)
     }
 }
 
@@ -81,12 +91,7 @@ struct Filled {
 }
 
 impl Filled {
-    fn new(layout: Layout, kinds: &[Kind; 2], strands: [&Strands; 2], slopes: &[Vec2]) -> Self {
-        let mut voxels = Voxels::new(layout);
-        let mut ends = vec![0.0; layout.texels() * layout.slabs];
-        for (kind, strands) in kinds.iter().zip(strands) {
-            ends::deposit_with_ends(strands, slopes, (kind.width_m, kind.thinning), &mut voxels, &mut ends);
-        }
+    fn new(voxels: Voxels, ends: Vec<f32>) -> Self {
         let (transmittance, skin_transmittance) = shadow::transmittance(&voxels, &ends);
         Self { voxels, ends, transmittance, skin_transmittance }
     }
@@ -96,9 +101,9 @@ impl Filled {
 /// square of hair that gains are taken from, and where the hair of the fin texture grows.
 pub fn bake(skins: &[Skin<'_>], square: &Square, hair: [&Fibre; 2], recipe: &TileRecipe, seed: u64) -> Tile {
     let texel_m = square.edge_m / square.texels as f32;
-    let kinds = [Kind::new(hair[0], texel_m, None), Kind::new(hair[1], texel_m, Some(1.5))];
+    let guard = Thinned::new(hair[0], texel_m);
     let slabs = recipe.shells.layers as usize - 1;
-    let reference = Reference::new(skins, hair, &kinds, recipe, texel_m, seed);
+    let reference = Reference::new(skins, hair, &guard, recipe, texel_m, seed);
     let height_m = reference.hair.height_m;
     let layout = Layout { toroidal: false, ..Layout::tile(square.texels as usize, slabs, square.edge_m, height_m) };
 
@@ -111,12 +116,12 @@ pub fn bake(skins: &[Skin<'_>], square: &Square, hair: [&Fibre; 2], recipe: &Til
     };
     let mut skin_share = vec![0.0; n];
     for (skin, rectangles) in skins.iter().zip(&square.charts) {
-        let grown =
-            [0, 1].map(|i| grow::skin::grow(&kinds[i].fibre, skin.mesh, skin.fields, combine(skin.seed, i as u64 + 1)));
+        let strands = grow::skin::grow(&guard.fibre, skin.mesh, skin.fields, combine(skin.seed, 1));
         let skin = Grown {
             skin,
-            ranges: [0, 1].map(|i| by_triangle(&grown[i], skin.mesh.triangles.len())),
-            strands: &grown,
+            ranges: by_triangle(&strands, skin.mesh.triangles.len()),
+            strands,
+            ground: Ground::new(skin.mesh, skin.fields, Undercoat::new(hair[1], Some(Pattern::default()))),
             topology: Topology::new(&skin.mesh.triangles, |v| skin.mesh.position_class[v as usize]),
         };
         let mut own = vec![Vec::new(); rectangles.len()];
@@ -128,7 +133,7 @@ pub fn bake(skins: &[Skin<'_>], square: &Square, hair: [&Fibre; 2], recipe: &Til
             let charts: Vec<Chart> = rectangles
                 .par_iter()
                 .zip(own)
-                .map(|(&rectangle, own)| skin.chart(&kinds, square, rectangle, own, &layout, &reference))
+                .map(|(&rectangle, own)| skin.chart(&guard, square, rectangle, own, &layout, &reference))
                 .collect();
             charts.iter().for_each(|chart| chart.place(&mut all, &mut skin_share));
         }
@@ -164,7 +169,7 @@ impl Reference {
     fn new(
         skins: &[Skin<'_>],
         hair: [&Fibre; 2],
-        kinds: &[Kind; 2],
+        guard: &Thinned,
         recipe: &TileRecipe,
         texel_m: f32,
         seed: u64,
@@ -174,7 +179,7 @@ impl Reference {
         let edge_m = size as f32 * texel_m;
         let slabs = recipe.shells.layers as usize - 1;
         let full = TileHair::grow(hair[0], hair[1], recipe.shells.tile_mm * 1e-3, seed);
-        let mut thin = TileHair::grow(&kinds[0].fibre, &kinds[1].fibre, edge_m, seed);
+        let mut thin = TileHair::grow(&guard.fibre, hair[1], edge_m, seed);
         thin.height_m = full.height_m;
         let lean = leaning(recipe.lean_deg);
         let truth = || {
@@ -182,9 +187,13 @@ impl Reference {
             gains::strand_transmittance(worn.scene(), worn.edge_m, worn.height_m, lean)
         };
         let stack = || {
-            let slopes = slopes(&thin, slabs);
+            let slopes = mean_slopes(&thin.guard, slabs, full.height_m);
             let layout = Layout::tile(size, slabs, edge_m, full.height_m);
-            (Filled::new(layout, kinds, [&thin.guard, &thin.undercoat], &slopes), slopes)
+            let (mut voxels, mut ends) = guard.deposit(layout, &thin.guard, &slopes);
+            if let Some(medium) = &thin.undercoat {
+                undercoat::add(medium, &slopes, &mut voxels, &mut ends);
+            }
+            (Filled::new(voxels, ends), slopes)
         };
         let along_skin = fins::grown(skins, hair, &full, combine(seed, 3));
         let fin_hair = along_skin.as_ref().unwrap_or(&full);
@@ -212,7 +221,7 @@ impl Reference {
             let far = |i: usize| s.points_of_m(i).iter().map(move |p| (*p - s.points_of_m(i)[0]).truncate().length());
             (0..s.len()).flat_map(far).fold(0.0, f32::max)
         };
-        let reach_m = reach(&thin.guard).max(reach(&thin.undercoat));
+        let reach_m = reach(&thin.guard);
         let gains = gains::fit(&tile, &truth, lean);
         Self { slopes, gains, tile, reach_m, hair: full }
     }
@@ -221,8 +230,9 @@ impl Reference {
 /// A skin with its hair.
 struct Grown<'a> {
     skin: &'a Skin<'a>,
-    strands: &'a [Strands; 2],
-    ranges: [Vec<Range<usize>>; 2],
+    strands: Strands,
+    ranges: Vec<Range<usize>>,
+    ground: Ground<'a>,
     topology: Topology,
 }
 
@@ -230,7 +240,7 @@ impl Grown<'_> {
     /// Fills one chart with its own hair and that from around it.
     fn chart(
         &self,
-        kinds: &[Kind; 2],
+        guard: &Thinned,
         square: &Square,
         rectangle: [u32; 4],
         own: &[usize],
@@ -241,19 +251,23 @@ impl Grown<'_> {
         let margin = (reference.reach_m / layout.texel_m).ceil().min(FURTHEST) as u32 + 1;
         let region = Region::new(mesh, &self.topology, patches, own, square.texels, rectangle, margin);
         let layout = Layout { size: region.size, ..*layout };
-        let flat = [0, 1].map(|i| flatten(&self.strands[i], &self.ranges[i], (mesh, fields), &region, layout.texel_m));
-        let mut filled = Filled::new(layout, kinds, [&flat[0], &flat[1]], &reference.slopes);
+        let flat = flatten(&self.strands, &self.ranges, (mesh, fields), &region, layout.texel_m);
+        let (mut voxels, mut ends) = guard.deposit(layout, &flat, &reference.slopes);
         let skin_share: Vec<f32> = (0..layout.texels()).map(|i| skin_share(&region, i)).collect();
         // A texel's values are means over what of it is skin.
         for (i, share) in skin_share.iter().enumerate().filter(|(_, share)| **share > 0.0 && **share < 1.0) {
             let over = 1.0 / share.max(LEAST_SHARE);
             for v in (0..layout.slabs).map(|slab| slab * layout.texels() + i) {
-                filled.voxels.extinction[v] *= over;
-                filled.voxels.tangent[v] *= over;
-                filled.voxels.colour[v] *= over;
-                filled.ends[v] *= over;
+                voxels.extinction[v] *= over;
+                voxels.tangent[v] *= over;
+                voxels.colour[v] *= over;
+                ends[v] *= over;
             }
         }
+        if let Some(medium) = &reference.hair.undercoat {
+            self.ground.add(&region, &Profile::new(medium, &layout), &mut voxels, &mut ends);
+        }
+        let filled = Filled::new(voxels, ends);
         Chart { rectangle, margin: margin as usize, filled, skin_share }
     }
 }

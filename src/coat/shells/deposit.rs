@@ -67,7 +67,7 @@ impl Voxels {
     }
 
     /// Adds another set with the same layout.
-    pub fn add(&mut self, other: &Self) {
+    fn add(&mut self, other: &Self) {
         self.extinction.iter_mut().zip(&other.extinction).for_each(|(a, b)| *a += b);
         self.tangent.iter_mut().zip(&other.tangent).for_each(|(a, b)| *a += *b);
         self.colour.iter_mut().zip(&other.colour).for_each(|(a, b)| *a += *b);
@@ -79,20 +79,20 @@ impl Voxels {
         &values[slab * n..(slab + 1) * n]
     }
 
-    /// Strands deposited into empty voxels of this layout, a fixed number of batches side by side, so that the sums come
+    /// Strands deposited into empty voxels, a fixed number of batches side by side, so that the sums come
     /// out the same for any number of threads. See [`Self::deposit`].
-    pub fn deposited(&self, strands: &Strands, slopes: &[Vec2], least_width_m: f32) -> Self {
+    pub fn deposited(layout: Layout, strands: &Strands, slopes: &[Vec2]) -> Self {
         let batch = strands.len().div_ceil(BATCHES).max(1);
         let batches: Vec<Self> = (0..BATCHES)
             .into_par_iter()
             .map(|b| {
-                let mut voxels = Self::new(self.layout);
+                let mut voxels = Self::new(layout);
                 let range = (b * batch).min(strands.len())..((b + 1) * batch).min(strands.len());
-                voxels.deposit(strands, range, slopes, least_width_m);
+                voxels.deposit(strands, range, slopes);
                 voxels
             })
             .collect();
-        let mut sum = Self::new(self.layout);
+        let mut sum = Self::new(layout);
         batches.iter().for_each(|voxels| sum.add(voxels));
         sum
     }
@@ -106,12 +106,12 @@ impl Voxels {
     }
 
     /// Deposits the strands of `range`. Each piece goes where the mean strand through it, of slope `slopes[slab]`, crosses the slab's
-    /// middle, spread over a square as wide as the hair (equal in area to its cross-section) or `least_width_m`.
-    pub fn deposit(&mut self, strands: &Strands, range: Range<usize>, slopes: &[Vec2], least_width_m: f32) {
+    /// middle, spread over a square as wide as the hair (equal in area to its cross-section).
+    fn deposit(&mut self, strands: &Strands, range: Range<usize>, slopes: &[Vec2]) {
         let layout = self.layout;
         for strand in range {
             pieces(strands, strand, &layout, slopes, |piece| {
-                let width_m = piece.width_m(least_width_m);
+                let width_m = piece.width_m(0.0);
                 let amount = piece.length_m * piece.diameter_m * piece.opacity;
                 let per_volume = amount / (layout.texel_m * layout.texel_m * layout.slab_m);
                 splat(&layout, piece.at_m, width_m, per_volume, |texel, weight| {

@@ -5,6 +5,7 @@ pub mod encode;
 pub mod ends;
 pub mod gains;
 pub mod shadow;
+pub mod undercoat;
 
 use crate::error::{Error, Result};
 use schemars::JsonSchema;

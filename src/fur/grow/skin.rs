@@ -4,7 +4,7 @@ use super::{course, empty, individual};
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::data::strands::{Root, Strands};
-use crate::fur::groom::clump;
+use crate::fur::groom::clump::{Around, Grid};
 use crate::fur::groom::fibre::Fibre;
 use crate::math::hash::{combine, unit_f32};
 use crate::math::split::cut;
@@ -109,7 +109,7 @@ struct Ground {
     length: [f32; 3],
     clump: [f32; 3],
     posed_from_rest: Mat3,
-    centres: clump::Around,
+    centres: Around,
 }
 
 impl Ground {
@@ -128,7 +128,7 @@ impl Ground {
             length: corners.map(|v| fields.length[v]),
             clump: corners.map(|v| fields.clump[v]),
             posed_from_rest: mesh.posed_from_rest(t),
-            centres: clump::Around::new(&rest_m, fibre.shape.clump.spacing_mm * 1e-3, 0),
+            centres: Around::new(&rest_m, Grid::in_space(fibre.shape.clump.spacing_mm * 1e-3)),
         }
     }
 
@@ -139,7 +139,7 @@ impl Ground {
         let lean = mix3(self.lean, b).normalize_or(normal);
         let x_axis = tangent(mix3(self.direction, b), normal);
         let y_axis = normal.cross(x_axis);
-        let to_clump = self.posed_from_rest * self.centres.to_centre(mix3(self.rest_m, b));
+        let to_clump = self.posed_from_rest * self.centres.to_centre_m(mix3(self.rest_m, b));
         let to_clump = Vec2::new(to_clump.dot(x_axis), to_clump.dot(y_axis));
         let (length_m, brightness) = individual(fibre, fibre.length_m * mix1(self.length, b), key);
         course(fibre, length_m, mix1(self.clump, b), to_clump, key, points_m);
