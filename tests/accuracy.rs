@@ -110,10 +110,11 @@ fn curved_undercoat_has_the_coverage_of_its_strands() {
 #[test]
 fn undercoat_has_the_coverage_of_single_hairs() {
     let fibre = Fibre::undercoat(&Undercoat::default(), &Colour::default(), 1.0);
-    let single =
-        TileHair { guard: grow::tile::grow(&fibre, 8e-3, 7), undercoat: None, ..hair(false, Shape::default()) };
+    // They know no pattern.
+    let even = TileHair { undercoat: Medium::new(&fibre, None, 8e-3), ..hair(false, Shape::default()) };
+    let single = TileHair { guard: grow::tile::grow(&fibre, 8e-3, 7), undercoat: None, ..even.clone() };
     for lean_deg in [0.0, 35.0] {
-        let tile = bake(&hair(false, Shape::default()), &recipe(lean_deg));
+        let tile = bake(&even, &recipe(lean_deg));
         let rows = coverage_table(&single, &tile, leaning(lean_deg), Effort { pixels: 64, ..EFFORT });
         print("single hairs ", &rows);
         // Where single hairs stand the volume does not know: structure is not judged.
