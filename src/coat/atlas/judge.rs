@@ -1,5 +1,5 @@
-//! How well a coat reproduces the strands of the skin that it is on: coverage along rays to places of the skin, through the strands
-//! that grow there and through the shells as they lie over them.
+//! How well a coat reproduces the hair of the skin that it is on: coverage along rays to places of the skin, through the strands and
+//! the undercoat that grow there and through the shells as they lie over them.
 
 use super::flatten::axes;
 use crate::coat::axes::Stand;
@@ -12,9 +12,14 @@ use crate::data::patches::Patches;
 use crate::data::strands::Strands;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::grow;
+use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::hash::{combine, unit_f32};
 use crate::math::{Mat3, Vec2, Vec3, orthonormal_basis, sampling};
 use crate::render::cast::Caster;
+use crate::render::march::enter::within;
+use crate::render::march::volume::{Resolution, Volume};
+use crate::render::march::{Journey, Start, Stepping};
+use crate::render::pelt::{Hair, Pelt};
 use crate::render::rays::{Ray, Rays};
 use crate::render::{DepthRange, Scene};
 use crate::runtime::cpu::{Stack, View, slab_optical_depth};
@@ -72,22 +77,39 @@ pub fn surface_tables(worn: &Worn<'_>, groups: &[Vec<Place>]) -> Vec<Vec<Row>> {
     let stack = Stack::new(worn.tile);
     let normals = worn.mesh.smooth_normals();
     let area_m2: f32 = (0..worn.mesh.triangles.len()).map(|t| worn.mesh.area_m2(t)).sum();
-    let hairs = area_m2 * worn.hair.iter().map(|fibre| fibre.density_per_m2).sum::<f32>();
     let all: Vec<usize> = (0..worn.mesh.triangles.len()).collect();
-    let all = (hairs <= AT_ONCE).then(|| worn.grown(&all));
+    let all = (area_m2 * worn.hair[0].density_per_m2 <= AT_ONCE).then(|| worn.grown(&all));
     let all = all.as_ref().map(caster);
-    let judge = Judge { worn, stack: &stack, normals: &normals, all: all.as_ref() };
+    let volume = worn.volume(&normals);
+    let judge = Judge { worn, stack: &stack, normals: &normals, all: all.as_ref(), volume: volume.as_ref() };
     groups.iter().map(|places| judge.rows(places)).collect()
 }
 
-impl Worn<'_> {
-    /// The hair of some triangles.
-    fn grown(&self, triangles: &[usize]) -> [Strands; 2] {
-        let grow = |i: u64| {
-            let seed = combine(self.seed, i + 1);
-            grow::skin::grow_on(self.hair[i as usize], self.mesh, self.fields, seed, triangles)
+impl<'a> Worn<'a> {
+    /// The guard hair of some triangles.
+    fn grown(&self, triangles: &[usize]) -> Strands {
+        grow::skin::grow_on(self.hair[0], self.mesh, self.fields, combine(self.seed, 1), triangles)
+    }
+
+    /// The undercoat, as a picture has it.
+    fn volume(&self, normals: &[Vec3]) -> Option<Volume<'a>> {
+        let pelt = Pelt {
+            skin: self.mesh,
+            fields: self.fields,
+            skin_factor: Vec3::ONE,
+            guard: None,
+            undercoat: Some(self.hair[1]),
+            hair: Hair::default(),
         };
-        [grow(0), grow(1)]
+        // Two sub-elements to the finest detail.
+        let wanted_m = 0.5 * Undercoat::new(self.hair[1], Some(Pattern::default())).detail_m();
+        let resolution = Resolution::default();
+        let subdivisions = (0..self.mesh.triangles.len()).map(|t| {
+            let [p, q, r] = self.mesh.corners_m(t);
+            let edge_m = (p.distance(q) + q.distance(r) + r.distance(p)) / 3.0;
+            libm::log2f(edge_m / wanted_m).ceil().clamp(0.0, resolution.most_subdivisions as f32) as u8
+        });
+        Volume::new(&pelt, normals, Vec3::Z, resolution, subdivisions.collect())
     }
 }
 
@@ -110,16 +132,24 @@ fn kept(strands: &Strands, passes: impl Fn(Vec3, f32) -> bool) -> Strands {
     }
 }
 
-fn caster([guard, undercoat]: &[Strands; 2]) -> Caster<'_> {
-    Caster::new(Scene { guard: Some(guard), undercoat: Some(undercoat), ..Scene::default() })
+fn caster(guard: &Strands) -> Caster<'_> {
+    Caster::new(Scene { guard: Some(guard), ..Scene::default() })
 }
+
+/// Finer than a picture's steps: what they miss would count as the stack's error.
+const STEPPING: Stepping = Stepping { depth: 0.15, layers: 1.0 };
+/// Optical depth beyond which nothing passes.
+const OPAQUE_DEPTH: f32 = 12.0;
+/// Places along a ray that are tried for one inside the shell, where its end lies below a hollow skin.
+const TRIES: u8 = 16;
 
 struct Judge<'a> {
     worn: &'a Worn<'a>,
     stack: &'a Stack<'a>,
     normals: &'a [Vec3],
-    /// All hair, where it was grown at once.
+    /// All guard hair, where it was grown at once.
     all: Option<&'a Caster<'a>>,
+    volume: Option<&'a Volume<'a>>,
 }
 
 impl Judge<'_> {
@@ -179,7 +209,7 @@ impl Judge<'_> {
             passes(middle, reach_m)
         };
         let triangles: Vec<usize> = (0..mesh.triangles.len()).filter(|&t| near(t)).collect();
-        let nearby = self.all.is_none().then(|| self.worn.grown(&triangles).map(|strands| kept(&strands, passes)));
+        let nearby = self.all.is_none().then(|| kept(&self.worn.grown(&triangles), passes));
         let own = nearby.as_ref().map(caster);
         let caster = self.all.or(own.as_ref());
         views.map(|(direction, far_m)| {
@@ -191,8 +221,10 @@ impl Judge<'_> {
             let fine = BLOCK.0 * BLOCK.1;
             let rays: Vec<Ray> = (0..fine * fine).map(|i| ray(fine, i)).collect();
             let range = DepthRange { near_m: 0.0, far_m };
-            let film = Rays::Texels { rays: &rays, size: [fine, fine] };
-            let strands = 1.0 - caster.map_or(1.0, |caster| caster.mean_transmittance(&film, range)) as f32;
+            let film = caster.map(|caster| caster.render(&Rays::Texels { rays: &rays, size: [fine, fine] }, range));
+            let depths = self.undercoat_depths(&rays, far_m, &triangles);
+            let clear = |i: usize| libm::expf(-depths[i]) * film.as_ref().map_or(1.0, |film| 1.0 - film.alpha[i]);
+            let strands = 1.0 - (0..rays.len()).map(clear).sum::<f32>() / rays.len() as f32;
             let mut seen = [strands, 0.0, 0.0];
             for i in 0..BLOCK.0 * BLOCK.0 {
                 let depths = self.depths(&ray(BLOCK.0, i), far_m, &triangles);
@@ -202,6 +234,29 @@ impl Judge<'_> {
             }
             seen
         })
+    }
+
+    /// Optical depths of undercoat along rays, followed from their ends, `far_m` from their origins, outwards.
+    fn undercoat_depths(&self, rays: &[Ray], far_m: f32, triangles: &[usize]) -> Vec<f32> {
+        let mut depths = vec![0.0; rays.len()];
+        let Some(volume) = self.volume else { return depths };
+        let start = |ray: &Ray| {
+            (0..TRIES).find_map(|i| {
+                let at_m = far_m * f32::from(i) / f32::from(TRIES);
+                let point_m = ray.origin_m + ray.direction * (far_m - at_m);
+                let holds = |&t: &usize| Some((t as u32, within(volume.shell(), t as u32, point_m)?));
+                triangles.iter().find_map(holds).map(|(triangle, place)| Start { at_m, triangle, place })
+            })
+        };
+        let journey = |(i, ray): (usize, &Ray)| {
+            let origin_m = ray.origin_m + ray.direction * far_m;
+            Some((i, Journey { origin_m, direction: -ray.direction, start: start(ray)?, far_m }))
+        };
+        let (found, journeys): (Vec<usize>, Vec<Journey>) = rays.iter().enumerate().filter_map(journey).unzip();
+        for (i, depth) in found.into_iter().zip(volume.depths_along(&journeys, &STEPPING, OPAQUE_DEPTH)) {
+            depths[i] = depth;
+        }
+        depths
     }
 
     /// Optical depth of the shells over `triangles` along a ray: by the law, and with each texel's as it is from above.

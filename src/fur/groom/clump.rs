@@ -72,9 +72,11 @@ impl Around {
         if cells.x * cells.y * cells.z <= Self::MOST as f32 {
             around.count = cells.to_array().map(|n| n as usize);
             let [x, y, z] = around.count;
-            around.centres_m.extend((0..x * y * z).map(|i| {
-                grid.centre_m(first + Vec3::new((i % x) as f32, (i / x % y) as f32, (i / (x * y)) as f32))
-            }));
+            around.centres_m.extend(
+                (0..x * y * z).map(|i| {
+                    grid.centre_m(first + Vec3::new((i % x) as f32, (i / x % y) as f32, (i / (x * y)) as f32))
+                }),
+            );
         }
         around
     }
