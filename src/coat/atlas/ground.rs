@@ -6,7 +6,9 @@ use crate::coat::shells::deposit::Voxels;
 use crate::coat::shells::undercoat::Profile;
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
+use crate::fur::groom::clump::Nearby;
 use crate::fur::undercoat::Undercoat;
+use crate::math::lanes::{self, F32s, Isa, Row, Vec3Row, Vec3s};
 use crate::math::{Vec2, Vec3};
 
 /// Heights between which crowding is taken as the nearest's.
@@ -23,12 +25,25 @@ pub struct Ground<'a> {
 }
 
 /// What stands on a place.
+#[derive(Clone, Copy)]
 struct Stand {
+    texel: usize,
     /// Hairs per area of the chart over the preset's density, without crowding.
     density: f32,
     tint: Vec3,
-    /// Density over its mean, by height.
-    crowding: [f32; LAYERS],
+    root_m: Vec3,
+    normal: Vec3,
+    clump: f32,
+}
+
+/// Sums over a texel's places.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    count: f32,
+    density: f32,
+    tint: Vec3,
+    /// Density with crowding, by height.
+    by_height: [f32; LAYERS],
 }
 
 impl<'a> Ground<'a> {
@@ -40,33 +55,28 @@ impl<'a> Ground<'a> {
     /// Adds the undercoat over a region's texels, each the mean over what of it is skin.
     pub fn add(&self, region: &Region, profile: &Profile, voxels: &mut Voxels, ends: &mut [f32]) {
         let layout = voxels.layout;
+        let width = layout.size[0];
         let across = (2.0 * layout.texel_m / self.undercoat.detail_m()).ceil().clamp(1.0, MOST_PLACES) as usize;
-        for texel in 0..layout.texels() {
-            let corner = Vec2::new((texel % layout.size[0]) as f32, (texel / layout.size[0]) as f32);
-            let (mut count, mut density, mut tint, mut by_height) = (0.0, 0.0, Vec3::ZERO, [0.0_f32; LAYERS]);
-            for i in 0..across * across {
-                let within = (Vec2::new((i % across) as f32, (i / across) as f32) + 0.5) / across as f32;
-                let at = corner + within;
-                let Some(stand) = region.at(at).and_then(|p| self.stand(&region.placed[p], at, layout.texel_m)) else {
-                    continue;
-                };
-                count += 1.0;
-                density += stand.density;
-                tint += stand.density * stand.tint;
-                by_height.iter_mut().zip(stand.crowding).for_each(|(sum, c)| *sum += stand.density * c);
-            }
-            if density > 0.0 {
-                let amount = by_height.map(|sum| sum / count);
-                profile.fill(voxels, ends, texel, tint / density, |part| {
-                    amount[((part.t * LAYERS as f32) as usize).min(LAYERS - 1)]
+        for y in 0..layout.size[1] {
+            let place = |i: usize| {
+                let (texel, within) = (i / (across * across), i % (across * across));
+                let within = Vec2::new((within % across) as f32, (within / across) as f32) + 0.5;
+                let at = Vec2::new(texel as f32, y as f32) + within / across as f32;
+                self.stand(texel, &region.placed[region.at(at)?], at, layout.texel_m)
+            };
+            let stands: Vec<Stand> = (0..width * across * across).filter_map(place).collect();
+            let sums = lanes::run(Crowd { undercoat: &self.undercoat, stands: &stands, width });
+            for (x, sum) in sums.into_iter().enumerate().filter(|(_, sum)| sum.density > 0.0) {
+                profile.fill(voxels, ends, y * width + x, sum.tint / sum.density, |part| {
+                    sum.by_height[((part.t * LAYERS as f32) as usize).min(LAYERS - 1)] / sum.count
                 });
             }
         }
     }
 
     /// What stands at a point of a placed triangle, in texels of its region.
-    fn stand(&self, placed: &Placed, at: Vec2, texel_m: f32) -> Option<Stand> {
-        let Self { mesh, fields, undercoat, .. } = self;
+    fn stand(&self, texel: usize, placed: &Placed, at: Vec2, texel_m: f32) -> Option<Stand> {
+        let Self { mesh, fields, .. } = self;
         let corners_m = mesh.corners_m(placed.triangle);
         let [x, y] = axes(corners_m, placed.corners.map(|p| p * texel_m))?;
         let [p, q, r] = placed.corners;
@@ -80,11 +90,51 @@ impl<'a> Ground<'a> {
             return None;
         }
         let normal = mix3(corners.map(|v| self.normals[v])).normalize_or(Vec3::Y);
-        let column = undercoat.column(mix3(corners_m), normal, mix(&fields.clump));
         Some(Stand {
+            texel,
             density: mix(&fields.density) * x.cross(y).length(),
             tint: mix3(corners.map(|v| fields.tint[v])),
-            crowding: std::array::from_fn(|layer| column.crowding((layer as f32 + 0.5) / LAYERS as f32)),
+            root_m: mix3(corners_m),
+            normal,
+            clump: mix(&fields.clump),
         })
+    }
+}
+
+/// Sums up a row of texels.
+struct Crowd<'a> {
+    undercoat: &'a Undercoat,
+    stands: &'a [Stand],
+    width: usize,
+}
+
+impl lanes::Work for Crowd<'_> {
+    type Output = Vec<Sum>;
+
+    #[inline(always)]
+    fn run<I: Isa>(self) -> Vec<Sum> {
+        let mut sums = vec![Sum::default(); self.width];
+        let mut nearby = Nearby::default();
+        for some in self.stands.chunks(I::LANES) {
+            let (mut root_m, mut normal, mut clump) = (Vec3Row::default(), Vec3Row::default(), Row::default());
+            for (lane, stand) in some.iter().enumerate() {
+                root_m.set(lane, stand.root_m);
+                normal.set(lane, stand.normal);
+                clump.0[lane] = stand.clump;
+                let sum = &mut sums[stand.texel];
+                sum.count += 1.0;
+                sum.density += stand.density;
+                sum.tint += stand.density * stand.tint;
+            }
+            let (root_m, normal) = (Vec3s::<I>::of(&root_m), Vec3s::of(&normal));
+            let columns = self.undercoat.columns(&mut nearby, root_m, normal, F32s::of(&clump));
+            for layer in 0..LAYERS {
+                let crowding = columns.crowdings(F32s::splat((layer as f32 + 0.5) / LAYERS as f32)).row();
+                for (stand, crowding) in some.iter().zip(crowding.0) {
+                    sums[stand.texel].by_height[layer] += stand.density * crowding;
+                }
+            }
+        }
+        sums
     }
 }
