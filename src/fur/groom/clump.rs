@@ -95,10 +95,10 @@ impl Around {
         let (apart_y, apart_z) = (apart(part.y), apart(part.z));
         let mut nearest = self.centres_m[(z * self.count[1] + y) * self.count[0] + x] - root_m;
         let mut least = nearest.length_squared();
-        for k in 0..3 {
-            for j in 0..3 {
+        for (k, apart_z) in apart_z.into_iter().enumerate() {
+            for (j, apart_y) in apart_y.into_iter().enumerate() {
                 // With room for rounding.
-                if (apart_y[j] + apart_z[k]) * 0.999 > least {
+                if (apart_y + apart_z) * 0.999 > least {
                     continue;
                 }
                 let row = ((z + k - 1) * self.count[1] + y + j - 1) * self.count[0] + x - 1;
