@@ -142,8 +142,12 @@ impl Undercoat {
 
     /// What crowds the hair over the skin's point `root_m` with this normal, at all heights.
     pub fn column(&self, root_m: Vec3, normal: Vec3, clump_factor: f32) -> Columns<Scalar> {
-        let (root_m, normal) = (Vec3s::splat(root_m), Vec3s::splat(normal));
-        self.columns(&mut Nearby::default(), root_m, normal, F32s::splat(clump_factor))
+        self.column_near(&mut Nearby::default(), root_m, normal, clump_factor)
+    }
+
+    /// The same; `nearby` may have been used for a point close by.
+    pub fn column_near(&self, nearby: &mut Nearby, root_m: Vec3, normal: Vec3, clump_factor: f32) -> Columns<Scalar> {
+        self.columns(nearby, Vec3s::splat(root_m), Vec3s::splat(normal), F32s::splat(clump_factor))
     }
 
     /// The same for points in lanes; `nearby` may have been used for points close by.

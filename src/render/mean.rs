@@ -131,6 +131,12 @@ impl<'a> MeanShadow<'a> {
         classes.par_iter().flat_map_iter(|&class| self.cell(class).as_flattened().iter().copied()).collect()
     }
 
+    /// Optical depth of both kinds at a place of undercoat's shell.
+    pub fn depth(&self, triangle: u32, b: Vec3, t: f32) -> f32 {
+        let [undercoat, guard] = self.at(triangle, b, t / self.tips);
+        undercoat + guard
+    }
+
     /// Guard hair's part of the depth at a place of undercoat's shell.
     pub fn guard_depth(&self, triangle: u32, b: Vec3, t: f32) -> f32 {
         self.at(triangle, b, t / self.tips)[1]

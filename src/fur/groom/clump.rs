@@ -119,21 +119,21 @@ impl Around {
 #[derive(Clone, Copy, Debug)]
 pub struct Nearby {
     home: Vec3,
+    grid: Option<Grid>,
     centres_m: [Vec3; 27],
 }
 
 impl Default for Nearby {
     fn default() -> Self {
-        Self { home: Vec3::NAN, centres_m: [Vec3::ZERO; 27] }
+        Self { home: Vec3::NAN, grid: None, centres_m: [Vec3::ZERO; 27] }
     }
 }
 
 impl Nearby {
-    /// The centres of cell `home`, which has whole coordinates, and of the cells around it, m; `grid` is that of the calls
-    /// before.
+    /// The centres of cell `home`, which has whole coordinates, and of the cells around it, m.
     pub fn centres_m(&mut self, home: Vec3, grid: &Grid) -> &[Vec3; 27] {
-        if home != self.home {
-            self.home = home;
+        if home != self.home || self.grid != Some(*grid) {
+            (self.home, self.grid) = (home, Some(*grid));
             self.centres_m = grid.centres_m(home);
         }
         &self.centres_m

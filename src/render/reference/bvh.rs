@@ -106,21 +106,31 @@ impl Bvh {
 
     /// Where, from `near` on, a ray first meets the box of a leaf; infinite where it meets none.
     pub fn first(&self, ray: &Ray, near: f64) -> f64 {
+        let enter = |index: usize, far: f64| {
+            self.nodes[index].bounds.span(ray, near, far).map_or(f64::INFINITY, |[enter, _]| enter)
+        };
         let mut nearest = f64::INFINITY;
-        let mut stack = [0_u32; 64];
+        let mut stack = [(0, 0.0); 64];
         let mut depth = usize::from(!self.nodes.is_empty());
+        if depth > 0 {
+            stack[0] = (0, enter(0, f64::INFINITY));
+        }
         while depth > 0 {
             depth -= 1;
-            let index = stack[depth] as usize;
-            let node = &self.nodes[index];
-            let Some([enter, _]) = node.bounds.span(ray, near, nearest) else { continue };
-            if node.count > 0 {
-                nearest = nearest.min(enter);
-            } else {
-                stack[depth] = index as u32 + node.first;
-                stack[depth + 1] = index as u32 + 1;
-                depth += 2;
+            let (index, enter_m) = stack[depth];
+            if enter_m >= nearest {
+                continue;
             }
+            let node = &self.nodes[index];
+            if node.count > 0 {
+                nearest = enter_m;
+                continue;
+            }
+            let children = [index + 1, index + node.first as usize].map(|child| (child, enter(child, nearest)));
+            // The nearer child goes first.
+            let nearer = usize::from(children[1].1 < children[0].1);
+            (stack[depth], stack[depth + 1]) = (children[1 - nearer], children[nearer]);
+            depth += 2;
         }
         nearest
     }

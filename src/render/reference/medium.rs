@@ -4,16 +4,23 @@ use super::bvh::Ray;
 use super::kind::{BRIM, Kind};
 use super::quadrature::{gauss, integrate};
 use super::shell::{Place, Slabs, Span};
+use crate::fur::groom::clump::Nearby;
 use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::{DVec3, Vec3};
 use crate::render::pelt::Pelt;
 use crate::render::shell::Shell;
+use std::cell::RefCell;
 
 /// Where Gauss's and Kronrod's optical depths of a stretch agree so far, the latter's error is far less.
 const TOLERANCE: f64 = 0.05;
 
 /// Slabs of the shell up to the undercoat's tips, and from there to the guard hair's.
 const SLABS: [usize; 2] = [6, 3];
+
+thread_local! {
+    /// Clump centres around the last point: the next one mostly shares them.
+    static NEARBY: RefCell<Nearby> = RefCell::default();
+}
 
 /// The shell's content.
 #[derive(Debug)]
@@ -106,8 +113,10 @@ impl<'a> Medium<'a> {
                 let normals = self.rest_normals.as_deref().unwrap_or(self.normals);
                 let normal = self.vector(normals, place).normalize_or(DVec3::Y);
                 let undercoat = &self.shell.undercoat;
-                let column = undercoat.column(root_m.as_vec3(), normal.as_vec3(), clump);
-                sum += bare * f64::from(column.crowding(place.t as f32));
+                let crowding = NEARBY.with_borrow_mut(|nearby| {
+                    undercoat.column_near(nearby, root_m.as_vec3(), normal.as_vec3(), clump).crowding(place.t as f32)
+                });
+                sum += bare * f64::from(crowding);
             }
         }
         if let (Counted::Both, Some(kind)) = (counted, &self.guard) {

@@ -26,7 +26,7 @@ use bvh::Ray;
 use guard::Guard;
 use medium::Medium;
 use rayon::prelude::*;
-use shade::{Look, Shader};
+use shade::{Look, Shader, Shadow};
 use skin::Skin;
 use trace::{Met, Scratch, Tracer};
 
@@ -67,6 +67,12 @@ impl Settings {
 
 /// Rays that tell how many more a pixel needs; they are not part of the picture, so that choosing by them adds no bias.
 const PILOT: usize = 24;
+
+/// Work of following a shadow to the light, in rays from the eye.
+const FOLLOWING: f64 = 3.0;
+
+/// Least share of rays whose shadow is followed.
+const LEAST_SHARE: f64 = 1.0 / 32.0;
 
 /// Renders a picture: what [`super::picture::draw`] should have drawn.
 ///
@@ -114,29 +120,42 @@ impl Reference<'_> {
         let Settings { samples, lightness_error, .. } = *self.settings;
         let most = samples.max(1);
         if lightness_error <= 0.0 || most <= PILOT {
-            return self.rays(x, y, key, most, scratch);
+            return self.rays(x, y, key, most, 1.0, scratch);
         }
-        let pilot = self.rays(x, y, combine(key, 1), PILOT, scratch);
-        let wanted = pilot.variance_of_lightness() / (lightness_error * lightness_error);
-        self.rays(x, y, key, (wanted.ceil() as usize).clamp(PILOT, most), scratch)
+        let pilot = self.rays(x, y, combine(key, 1), PILOT, 1.0, scratch);
+        let [quick, rest] = pilot.variances_of_lightness();
+        // The share that makes least work of a given error, where following a shadow takes `FOLLOWING` times a ray's work.
+        let share = (rest / (FOLLOWING * quick).max(1e-12)).sqrt().clamp(LEAST_SHARE, 1.0);
+        let wanted = (quick + rest / share) / (lightness_error * lightness_error);
+        self.rays(x, y, key, (wanted.ceil() as usize).clamp(PILOT, most), share, scratch)
     }
 
-    fn rays(&self, x: usize, y: usize, key: u64, count: usize, scratch: &mut Scratch) -> Sum {
+    /// Sums up `count` rays, of which `share` have their shadow followed.
+    fn rays(&self, x: usize, y: usize, key: u64, count: usize, share: f64, scratch: &mut Scratch) -> Sum {
         let mut sum = Sum::default();
         for sample in 0..count as u64 {
             let [u, v, chosen] = evenly(key, sample);
             let ray = self.lens.ray(x as f64 + u, y as f64 + v);
             sum.count += 1.0;
+            let followed = ((sample + 1) as f64 * share).floor() > (sample as f64 * share).floor();
+            sum.followed += f64::from(u8::from(followed));
             let Some(met) = self.tracer.meet(&ray, chosen, scratch) else { continue };
-            let look = match (&met, self.pelt.guard, self.tracer.guard) {
-                (Met::Guard(c), Some((strands, _)), Some(g)) => self.shader.guard(strands, g, c, ray.direction),
-                (Met::Undercoat(_, place), _, _) => self.shader.undercoat(place, ray.direction),
-                (Met::Skin(_, place), _, _) => self.shader.skin(place, ray.direction),
-                _ => Look::default(),
-            };
+            let look = self.look(&met, ray.direction, Shadow::Mean);
             sum.add(&met, &look);
+            if followed {
+                sum.correct(look.radiance, self.look(&met, ray.direction, Shadow::Followed).radiance);
+            }
         }
         sum
+    }
+
+    fn look(&self, met: &Met, direction: DVec3, shadow: Shadow) -> Look {
+        match (met, self.pelt.guard, self.tracer.guard) {
+            (Met::Guard(c), Some((strands, _)), Some(g)) => self.shader.guard(strands, g, c, direction, shadow),
+            (Met::Undercoat(_, place), _, _) => self.shader.undercoat(place, direction, shadow),
+            (Met::Skin(_, place), _, _) => self.shader.skin(place, direction, shadow),
+            _ => Look::default(),
+        }
     }
 }
 
@@ -175,8 +194,14 @@ impl Lens {
 #[derive(Default)]
 struct Sum {
     count: f64,
+    /// With the shadow in the mean.
     light: DVec3,
     luminance_squared: f64,
+    /// Rays whose shadow was followed too.
+    followed: f64,
+    /// What that changed.
+    change: DVec3,
+    change_squared: f64,
     look: Look,
     depth_m: f64,
     guard: f64,
@@ -205,18 +230,36 @@ impl Sum {
         self.depth_m += at_m;
     }
 
-    /// Variance of one ray's part in the pixel's lightness: L* goes with the cube root of luminance.
-    fn variance_of_lightness(&self) -> f64 {
-        let mean = luminance(self.light) / self.count;
-        let variance = (self.luminance_squared / self.count - mean * mean).max(0.0) * self.count / (self.count - 1.0);
-        let slope = 116.0 / 3.0 * libm::pow(mean.clamp(0.0, 1.0) + 0.01, -2.0 / 3.0);
-        slope * slope * variance
+    /// Adds what following the shadow changes of a ray's radiance.
+    fn correct(&mut self, quick: DVec3, followed: DVec3) {
+        let change = followed - quick;
+        self.change += change;
+        self.change_squared += luminance(change) * luminance(change);
+    }
+
+    /// Mean radiance: expected is that with shadows followed, whatever the quick ones are.
+    fn radiance(&self) -> DVec3 {
+        (self.light / self.count + self.change / self.followed.max(1.0)).max(DVec3::ZERO)
+    }
+
+    /// Variances of one ray's part in the pixel's lightness: with its shadow in the mean, and of what following it changes.
+    /// L* goes with the cube root of luminance.
+    fn variances_of_lightness(&self) -> [f64; 2] {
+        let slope = 116.0 / 3.0 * libm::pow(luminance(self.radiance()).clamp(0.0, 1.0) + 0.01, -2.0 / 3.0);
+        let variance = |sum: DVec3, squared: f64, count: f64| {
+            let mean = luminance(sum) / count;
+            (squared / count - mean * mean).max(0.0) * count / (count - 1.0) * slope * slope
+        };
+        [
+            variance(self.light, self.luminance_squared, self.count),
+            variance(self.change, self.change_squared, self.followed),
+        ]
     }
 
     fn into_film(self, film: &mut Film, i: usize) {
         let met = self.guard + self.undercoat + self.skin;
         let mean = |v: DVec3| (v / self.count).as_vec3();
-        film.radiance[i] = mean(self.light);
+        film.radiance[i] = self.radiance().as_vec3();
         film.albedo[i] = mean(self.look.albedo);
         film.tangent[i] = mean(self.look.tangent);
         film.normal[i] = mean(self.look.normal);

@@ -9,6 +9,7 @@ use super::skin::Skin;
 use crate::data::strands::Strands;
 use crate::error::Result;
 use crate::math::{DVec3, Vec3};
+use crate::render::mean::MeanShadow;
 use crate::render::pelt::{Layer, Lighting, Pelt, sky_depth, slant_depth, terminator};
 use crate::shade::kajiya_kay::KajiyaKay;
 use crate::shade::lobes::Lobes;
@@ -17,6 +18,15 @@ use std::f64::consts::FRAC_1_PI;
 
 /// Optical depth beyond which no light is left.
 const DARK: f64 = 8.0;
+
+/// How the key light's shadow is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shadow {
+    /// Integrated along the ray to the light.
+    Followed,
+    /// The renderer's, in the mean: quick, and close enough that the difference hardly varies.
+    Mean,
+}
 
 /// What a point looks like.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,6 +56,7 @@ pub struct Shader<'a> {
     pelt: &'a Pelt<'a>,
     lighting: &'a Lighting,
     medium: Option<&'a Medium<'a>>,
+    mean: Option<MeanShadow<'a>>,
     skin: &'a Skin,
     lobes: Lobes<f64>,
     undercoat: KajiyaKay<f64>,
@@ -69,6 +80,7 @@ impl<'a> Shader<'a> {
             pelt,
             lighting,
             medium,
+            mean: MeanShadow::new(pelt, lighting.key.to_light),
             skin,
             lobes: Lobes::new(&hair.guard)?,
             undercoat: KajiyaKay::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent),
@@ -77,14 +89,14 @@ impl<'a> Shader<'a> {
     }
 
     /// Undercoat at a place, seen along `direction`.
-    pub fn undercoat(&self, place: &Place, direction: DVec3) -> Look {
+    pub fn undercoat(&self, place: &Place, direction: DVec3, shadow: Shadow) -> Look {
         let Some(medium) = self.medium else { return Look::default() };
         let fields = self.pelt.fields;
         let ramp = self.pelt.undercoat.map_or(Vec3::ONE, |fibre| fibre.profile.ramp_at(place.t as f32));
         let albedo = medium.vector(&fields.tint, place) * ramp.as_dvec3();
         let hair = medium.hair(place);
         let height_m = place.t * self.height_m(place);
-        let site = self.site(place, height_m, hair);
+        let site = self.site(place, height_m, hair, shadow);
         let diffuse = albedo * self.pelt.hair.undercoat_diffuse;
         let scattered = |angles: Angles<f64>| {
             let (tinted, plain) = self.undercoat.scatter(angles);
@@ -96,7 +108,14 @@ impl<'a> Shader<'a> {
     }
 
     /// A guard hair where a ray enters it.
-    pub fn guard(&self, strands: &Strands, guard: &Guard<'_>, crossing: &Crossing, direction: DVec3) -> Look {
+    pub fn guard(
+        &self,
+        strands: &Strands,
+        guard: &Guard<'_>,
+        crossing: &Crossing,
+        direction: DVec3,
+        shadow: Shadow,
+    ) -> Look {
         let strand = crossing.strand as usize;
         let root = strands.roots[strand];
         let [u, v] = root.barycentric.map(f64::from);
@@ -116,7 +135,7 @@ impl<'a> Shader<'a> {
         let height_m = (at - point(0)).dot(normal) / lean.dot(normal).max(0.05);
         // A hair is shadowed as the column over its root is at the same height.
         let column = Place { t: (height_m / self.height_m(&foot)).max(0.0), ..foot };
-        let site = self.site(&column, height_m, lean);
+        let site = self.site(&column, height_m, lean, shadow);
         let albedo = strands.tint[strand].as_dvec3() * strands.profile.ramp_at(guard.s(crossing) as f32).as_dvec3();
         let p = &self.pelt.hair.guard;
         let share = albedo * (p.tt.albedo + p.trt.albedo + p.diffuse);
@@ -129,7 +148,7 @@ impl<'a> Shader<'a> {
     }
 
     /// Skin at a place, seen along `direction`.
-    pub fn skin(&self, place: &Place, direction: DVec3) -> Look {
+    pub fn skin(&self, place: &Place, direction: DVec3, shadow: Shadow) -> Look {
         let outside = self.normal(place);
         let back = direction.dot(outside) > 0.0;
         let normal = if back { -outside } else { outside };
@@ -137,7 +156,8 @@ impl<'a> Shader<'a> {
         let lean = self.vector(&fields.lean, place).normalize_or(normal);
         let albedo = self.vector(&fields.tint, place) * self.pelt.skin_factor.as_dvec3();
         // The back of a pelt is bare.
-        let site = if back { Site { normal, lean, above: 0.0, key_depth: 0.0 } } else { self.site(place, 0.0, lean) };
+        let site =
+            if back { Site { normal, lean, above: 0.0, key_depth: 0.0 } } else { self.site(place, 0.0, lean, shadow) };
         let mut radiance = self.lighting.ambient.as_dvec3() * albedo * libm::exp(-f64::from(sky_depth(site.above)));
         for (i, light) in std::iter::once(&self.lighting.key).chain(&self.lighting.fill).enumerate() {
             let cosine = light.to_light.as_dvec3().dot(normal);
@@ -186,7 +206,7 @@ impl<'a> Shader<'a> {
     }
 
     /// What stands around hair at a place, `height_m` above the skin.
-    fn site(&self, place: &Place, height_m: f64, lean: DVec3) -> Site {
+    fn site(&self, place: &Place, height_m: f64, lean: DVec3, shadow: Shadow) -> Site {
         let fields = self.pelt.fields;
         let (density, length) = (self.scalar(&fields.density, place) as f32, self.scalar(&fields.length, place) as f32);
         let above = |fibre| Layer::new(fibre, density, length).above(height_m as f32);
@@ -195,7 +215,13 @@ impl<'a> Shader<'a> {
         let normal = self.normal(place);
         let to_light = self.lighting.key.to_light;
         let lit = terminator(to_light, normal.as_vec3()) > 0.0;
-        let key_depth = if lit { self.key_depth(place) } else { 0.0 };
+        let key_depth = match (lit, shadow, &self.mean) {
+            (false, ..) => 0.0,
+            (true, Shadow::Mean, Some(mean)) => {
+                f64::from(mean.depth(place.triangle, place.b.as_vec3(), place.t as f32).min(DARK as f32))
+            }
+            (true, ..) => self.key_depth(place),
+        };
         Site { normal, lean, above: own + guard, key_depth }
     }
 
