@@ -9,7 +9,7 @@ use furrier::render::resolve::Blending;
 
 const SETTINGS: Settings = Settings {
     size: [96, 96],
-    passes: 1,
+    halvings: 0,
     blending: Blending::Virtual { fragments: 8 },
     stepping: furrier::render::march::Stepping { depth: 0.25, layers: 2.0 },
     resolution: furrier::render::march::volume::Resolution {
@@ -17,6 +17,7 @@ const SETTINGS: Settings = Settings {
         subelement_px: 1.5,
         most_subdivisions: 7,
         shadow_coarser: 2,
+        coarsest_details: f32::INFINITY,
         pattern: None,
     },
     hair_px: 0.0,
@@ -117,7 +118,7 @@ fn shorter_steps_agree_with_longer_ones() {
 fn layers_that_are_not_asked_for_take_no_room_and_change_nothing() {
     let grown = thin();
     let camera = pelts::camera(0.2);
-    let of = |layers| film(&grown, &camera, &Settings { layers, passes: 2, ..SETTINGS });
+    let of = |layers| film(&grown, &camera, &Settings { layers, halvings: 1, ..SETTINGS });
     let [all, depth, light] = [Layers::All, Layers::LightAndDepth, Layers::Light].map(of);
     for film in [&depth, &light] {
         assert_eq!((&film.radiance, &film.alpha), (&all.radiance, &all.alpha));

@@ -79,10 +79,10 @@ fn small() -> Settings {
 }
 
 #[test]
-fn a_pelt_in_bands_and_passes_looks_the_same_on_both() {
+fn a_pelt_in_bands_and_samples_looks_the_same_on_both() {
     let grown = pelt(120.0, true);
     // Room for a few rows at a time, and lists that are too short at first.
-    let settings = Settings { passes: 2, band_bytes: 3 << 20, ..small() };
+    let settings = Settings { halvings: 1, band_bytes: 3 << 20, ..small() };
     hold(&grown.pelt(), &pelts::studio(), &pelts::camera(0.35), &settings);
 }
 

@@ -7,7 +7,7 @@ use furrier::data::strands::Strands;
 use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::groom::{Colour, Guard, Length, Shape, Undercoat};
 use furrier::fur::grow::skin;
-use furrier::math::{DVec3, Vec2, Vec3};
+use furrier::math::{DVec3, Vec3};
 use furrier::render::pelt::{Hair, Lighting, Pelt};
 use furrier::render::view::View;
 use furrier::shade::light::Directional;
@@ -137,5 +137,5 @@ pub fn looking(eye_m: Vec3, target_m: Vec3, up: Vec3, vfov_deg: f64) -> Camera {
 
 /// What a camera sees in a picture of `size`, world coordinates.
 pub fn view(camera: &Camera, size: [usize; 2]) -> View {
-    View::new(camera, DVec3::ZERO, size, Vec2::ZERO).unwrap()
+    View::new(camera, DVec3::ZERO, size).unwrap()
 }

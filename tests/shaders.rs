@@ -186,14 +186,14 @@ fn structs_of_kernels_lie_as_in_rust() {
                 right,
                 near_m,
                 up,
-                pass_index,
+                most_fragments,
                 forward,
                 most_starts,
                 centre_px,
                 size,
                 rows,
-                most_fragments,
-                most_stretches
+                most_stretches,
+                padding
             }),
         ),
         (&march, "Inside", in_rust!(InsideItem { b, t, triangle })),

@@ -23,7 +23,7 @@ fn film(grown: &Grown, settings: &Settings) -> Film {
 /// All hairs, and a third of them, of which each is drawn `error` times as wide as it should be.
 pub fn whole_and_thinned(error: f32) -> (Film, Film) {
     let mut grown = dense();
-    let settings = Settings { size: SIZE, passes: 4, ..Settings::default() };
+    let settings = Settings { size: SIZE, ..Settings::default() };
     let whole = film(&grown, &settings);
     let view = pelts::view(&pelts::camera(0.35), SIZE);
     let mut left = Thinning::new(&view, 0.5).of(&grown.guard).unwrap();

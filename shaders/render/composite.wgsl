@@ -15,7 +15,7 @@ override SIMPLIFIED: bool = false;
 @group(3) @binding(4) var<storage, read> stretches: array<Stretch>;
 @group(3) @binding(5) var<storage, read> looks: array<f32>;
 // Four planes of the band's pixels: radiance and alpha; albedo and distance; tangent and guard hair's part of alpha; normal and
-// undercoat's. Sums over passes.
+// undercoat's.
 @group(3) @binding(6) var<storage, read_write> film: array<vec4<f32>>;
 
 // What lies in front, all premultiplied.
@@ -187,10 +187,6 @@ fn composite(
     );
     for (var plane = 0u; plane < 4u; plane++) {
         let slot = plane * count + at;
-        if view.pass_index > 0u {
-            film[slot] += planes[plane];
-        } else {
-            film[slot] = planes[plane];
-        }
+        film[slot] = planes[plane];
     }
 }

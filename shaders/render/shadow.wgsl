@@ -35,7 +35,7 @@ fn shadow(
     var depth = 0.0;
     for (var i = 0u; i < MOST_STEPS && walk.alive && depth < enough; i++) {
         // Steps towards the light may be long: what they miss is blurred by the shadow's own resolution.
-        depth += advance(&walk, origin_m, lights[0].to_light, 1e30, Stepping(1.0, 4.0)).depth;
+        depth += advance(&walk, origin_m, lights[0].to_light, 1e30, Stepping(0.5, 0.5)).depth;
     }
     depth += mean_depths(triangle, b, t * scene.undercoat_kind.top_m / tips_m()).y;
     write_byte(first * (scene.layers + 1u) + level * corners_of(d) + corner, code_value(depth));

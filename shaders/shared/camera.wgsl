@@ -12,18 +12,17 @@ struct View {
     right: vec3<f32>,
     near_m: f32,
     up: vec3<f32>,
-    // How many passes were added up before this one.
-    pass_index: u32,
+    // Items that the lists hold at most: fragments, starts, stretches.
+    most_fragments: u32,
     forward: vec3<f32>,
-    // Items that the lists hold at most: starts, fragments, stretches.
     most_starts: u32,
     centre_px: vec2<f32>,
     // Pixels per row and rows of the whole picture.
     size: vec2<u32>,
     // First row of the band and the one past its last.
     rows: vec2<u32>,
-    most_fragments: u32,
     most_stretches: u32,
+    padding: u32,
 }
 
 // What a band came to, read back by the host: indices into its totals. The last is not 0 where a list was too short, so that

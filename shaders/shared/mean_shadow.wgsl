@@ -6,7 +6,7 @@
 // Intervals of height up to the tips.
 const LAYERS: u32 = 24u;
 // Tables before the depths of the first vertex.
-const BEFORE: u32 = 2u;
+const BEFORE: u32 = 3u;
 
 // Height of the tallest hair where the length field is 1, m; 0 where none grows.
 fn tips_m() -> f32 {

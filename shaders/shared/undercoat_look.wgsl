@@ -14,7 +14,8 @@ fn shadow_byte(byte: u32) -> f32 {
     return decode_value((shadow[byte >> 2u] >> (8u * (byte & 3u))) & 255u);
 }
 
-// Optical depth towards the key light, linear between the three corners and two levels around a place.
+// Optical depth towards the key light, linear between the three corners and two levels around a place;
+// between levels as a flat coat's is.
 fn key_depth(triangle: u32, b: vec3<f32>, t: f32) -> f32 {
     let d = triangles[triangle].shadow_splits;
     let n = f32(1u << d);
@@ -34,7 +35,7 @@ fn key_depth(triangle: u32, b: vec3<f32>, t: f32) -> f32 {
         corner_index(at_i, at_j + 1u, d),
     );
     let weights = select(vec3(rest, f), vec3(-rest, 1.0 - f.yx), turned);
-    let at = clamp(t, 0.0, 1.0) * f32(scene.layers);
+    let at = clamp(table_at(2u, t), 0.0, f32(scene.layers));
     let low = min(u32(at), scene.layers - 1u);
     let below = triangles[triangle].shadow_at * (scene.layers + 1u) + low * corners_of(d) + corners;
     let above = below + corners_of(d);

@@ -8,7 +8,7 @@ use crate::bake::picture::{Grown, Only, Scene, studio};
 use crate::data::camera::Camera;
 use crate::data::film::Layers;
 use crate::error::{Error, Result};
-use crate::math::{DVec3, Vec2, Vec3};
+use crate::math::{DVec3, Vec3};
 use crate::preset::Preset;
 use crate::render::defocus::{self, Lens};
 use crate::render::develop::{Development, develop};
@@ -123,9 +123,9 @@ pub struct Render {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Quality {
-    /// One pass; thin hairs are fewer and wider
+    /// One sample per pixel; thin hairs are fewer and wider
     Preview,
-    /// Four passes, shorter steps
+    /// Four samples per pixel, shorter steps
     Final,
     /// Another algorithm in f64, ray by ray: minutes to hours, to measure the others by
     Reference,
@@ -276,7 +276,7 @@ impl Render {
         let Some(f_number) = self.f_number else { return Ok(()) };
         let start = Instant::now();
         let size = [picture.film.width, picture.film.height];
-        let view = View::new(camera, grown.origin_m(), size, Vec2::ZERO)?;
+        let view = View::new(camera, grown.origin_m(), size)?;
         let target_m = DVec3::from(camera.eye).distance(DVec3::from(camera.target)) as f32;
         let focus_m = self.focus.or_else(|| defocus::middle_depth_m(&picture.film, &view)).unwrap_or(target_m);
         let lens = Lens::of_f_number(f_number, camera.vfov_deg.to_radians() as f32, focus_m);

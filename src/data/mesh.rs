@@ -78,6 +78,12 @@ impl Mesh {
         self.triangles[t].map(|v| self.positions_m[v as usize])
     }
 
+    /// Mean length of triangle `t`'s edges, m.
+    pub fn mean_edge_m(&self, t: usize) -> f32 {
+        let corners = self.corners_m(t);
+        (0..3).map(|i| corners[i].distance(corners[(i + 1) % 3])).sum::<f32>() / 3.0
+    }
+
     /// The three corners of triangle `t` in the rest pose, m.
     pub fn rest_corners_m(&self, t: usize) -> [Vec3; 3] {
         let positions = self.rest_m.as_ref().unwrap_or(&self.positions_m);

@@ -25,12 +25,11 @@ pub struct View {
 }
 
 impl View {
-    /// Of a camera, for a film of `size`, all pixels moved by `shift_px` (for supersampling), in coordinates whose origin
-    /// lies at `origin_m` in the world.
+    /// Of a camera, for a film of `size`, in coordinates whose origin lies at `origin_m` in the world.
     ///
     /// # Errors
     /// Names what keeps the camera from looking anywhere.
-    pub fn new(camera: &Camera, origin_m: DVec3, size: [usize; 2], shift_px: Vec2) -> Result<Self> {
+    pub fn new(camera: &Camera, origin_m: DVec3, size: [usize; 2]) -> Result<Self> {
         let camera = camera.checked()?;
         if size.iter().any(|&n| n == 0 || n > 1 << 15) {
             return Err(Error::usage("there is no such picture")
@@ -47,7 +46,7 @@ impl View {
             focal_px: half.y / libm::tanf(0.5 * camera.vfov_deg.to_radians() as f32),
             size,
             near_m: NEAREST * eye.distance(DVec3::from(camera.target)) as f32,
-            centre_px: half - shift_px,
+            centre_px: half,
         })
     }
 

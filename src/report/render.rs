@@ -65,15 +65,16 @@ struct Way {
 type Change = fn(&mut Settings, f64);
 
 /// Every control of the renderer and the values it is tried at.
-const CONTROLS: [(&str, &[f64], Change); 8] = [
+const CONTROLS: [(&str, &[f64], Change); 9] = [
     ("optical depth of a step", &[0.05, 0.1, 0.5, 1.0, 2.0], |s, v| s.stepping.depth = v as f32),
     ("length of a step, layers", &[0.5, 1.0, 4.0, 8.0], |s, v| s.stepping.layers = v as f32),
     ("most subdivisions d", &[0.0, 2.0, 4.0, 5.0, 6.0, 8.0], |s, v| s.resolution.most_subdivisions = v as u32),
     ("edge of a sub-element, px", &[0.75, 3.0, 6.0, 12.0], |s, v| s.resolution.subelement_px = v as f32),
+    ("largest sub-element, details", &[1.0, 2.0, 4.0], |s, v| s.resolution.coarsest_details = v as f32),
     ("layers", &[4.0, 8.0, 32.0, 64.0], |s, v| s.resolution.layers = v as u32),
     ("virtual fragments", &[1.0, 4.0, 8.0, 16.0, 30.0], |s, v| s.blending = Blending::Virtual { fragments: v as u32 }),
     ("least width of hair, px", &[0.0, 0.25, 0.35, 0.5, 0.7, 1.0, 1.4], |s, v| s.hair_px = v as f32),
-    ("supersampling", &[1.0, 2.0, 4.0, 8.0], |s, v| s.passes = v as usize),
+    ("samples per pixel", &[1.0, 4.0, 16.0], |s, v| s.halvings = (v as u32).ilog2() / 2),
 ];
 
 /// Draws a scene in every way and compares each picture with the yardstick: the finest setting.
@@ -137,7 +138,7 @@ fn point(way: &Way, picture: &Picture, truth: &Light) -> Result<Point> {
 /// Twice as fine in every control as the finest that is tried, where that can be paid for.
 fn finest(size: [usize; 2]) -> Settings {
     Settings {
-        passes: 32,
+        halvings: 3,
         blending: Blending::Virtual { fragments: 64 },
         stepping: Stepping { depth: 0.04, layers: 0.5 },
         resolution: Resolution { layers: 64, subelement_px: 0.5, most_subdivisions: 8, ..Resolution::default() },

@@ -40,13 +40,13 @@ pub(super) struct Band {
     room: Room,
 }
 
-/// A band as drawn: sums over passes, and what each pass came to.
+/// A band as drawn, and what it came to.
 pub(super) struct Drawn {
     /// Four planes of four numbers per pixel, as `render/composite.wgsl` describes.
     pub film: Vec<[f32; 4]>,
-    /// By pass.
-    pub totals: Vec<Totals>,
-    /// Time of each of [`STEPS`], ms, summed over passes; none without a clock.
+    /// What the band came to.
+    pub totals: Totals,
+    /// Time of each of [`STEPS`], ms; none without a clock.
     pub ms: Option<Vec<f64>>,
 }
 
@@ -103,12 +103,12 @@ impl Band {
         })
     }
 
-    /// Lights the guard hair. What it looks like depends on the eye alone, so once serves all bands and passes.
+    /// Lights the guard hair. What it looks like depends on the eye alone, so once serves all bands.
     ///
     /// # Errors
     /// As [`Gpu::finish`].
     pub(super) fn light(&self, gpu: &Gpu, kernels: &Kernels, scene: &GpuScene, view: &View) -> Result<Option<f64>> {
-        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view, [0, 0], 0)));
+        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view, [0, 0])));
         let timer = Timer::new(gpu, 1);
         let mut encoder = gpu.encoder("light");
         let groups = [&scene.group, &scene.volume, &self.frame, &self.looks];
@@ -123,7 +123,7 @@ impl Band {
         Ok(timer.read_ms(gpu)?.map(|ms| ms[0]))
     }
 
-    /// Draws `rows` of the picture once for each view and adds up.
+    /// Draws `rows` of the picture.
     ///
     /// # Errors
     /// As [`Gpu::finish`].
@@ -132,10 +132,10 @@ impl Band {
         gpu: &Gpu,
         kernels: &Kernels,
         scene: &GpuScene,
-        views: &[View],
+        view: &View,
         rows: [u32; 2],
     ) -> Result<Drawn> {
-        let pixels = (rows[1] - rows[0]) as usize * views[0].size[0];
+        let pixels = (rows[1] - rows[0]) as usize * view.size[0];
         let totals_bytes = size_of::<Totals>() as u64;
         let film_bytes = (pixels * FILM_BYTES) as u64;
         let read = |label, size| {
@@ -146,35 +146,25 @@ impl Band {
                 mapped_at_creation: false,
             })
         };
-        let read_totals = read("read totals", totals_bytes * views.len() as u64);
+        let read_totals = read("read totals", totals_bytes);
         let read_film = read("read film", film_bytes);
-        let steps = STEPS.len() as u32;
-        let timer = Timer::new(gpu, steps * views.len() as u32);
-        for (index, view) in views.iter().enumerate() {
-            let uniform = ViewUniform {
-                most_starts: self.room.starts as u32,
-                most_fragments: self.room.fragments as u32,
-                most_stretches: self.room.stretches as u32,
-                ..ViewUniform::new(view, rows, index as u32)
-            };
-            gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&uniform));
-            let mut encoder = gpu.encoder("band");
-            self.record(&mut encoder, kernels, scene, pixels, index == 0, |step| {
-                timer.compute_writes(index as u32 * steps + step)
-            });
-            encoder.copy_buffer_to_buffer(&self.totals, 0, &read_totals, index as u64 * totals_bytes, totals_bytes);
-            gpu.queue.submit([encoder.finish()]);
-        }
-        let mut encoder = gpu.encoder("read");
+        let timer = Timer::new(gpu, STEPS.len() as u32);
+        let uniform = ViewUniform {
+            most_starts: self.room.starts as u32,
+            most_fragments: self.room.fragments as u32,
+            most_stretches: self.room.stretches as u32,
+            ..ViewUniform::new(view, rows)
+        };
+        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&uniform));
+        let mut encoder = gpu.encoder("band");
+        self.record(&mut encoder, kernels, scene, pixels, |step| timer.compute_writes(step));
+        encoder.copy_buffer_to_buffer(&self.totals, 0, &read_totals, 0, totals_bytes);
         encoder.copy_buffer_to_buffer(&self.film, 0, &read_film, 0, film_bytes);
         gpu.finish(encoder)?;
-        let ms = timer
-            .read_ms(gpu)?
-            .map(|ms| (0..STEPS.len()).map(|step| ms.iter().skip(step).step_by(STEPS.len()).sum()).collect());
         Ok(Drawn {
             film: bytemuck::pod_collect_to_vec(&gpu.read_buffer(&read_film)?),
-            totals: bytemuck::pod_collect_to_vec(&gpu.read_buffer(&read_totals)?),
-            ms,
+            totals: bytemuck::pod_read_unaligned(&gpu.read_buffer(&read_totals)?),
+            ms: timer.read_ms(gpu)?,
         })
     }
 
@@ -184,7 +174,6 @@ impl Band {
         kernels: &Kernels,
         scene: &GpuScene,
         pixels: usize,
-        first: bool,
         writes: impl Fn(u32) -> Option<wgpu::ComputePassTimestampWrites<'a>>,
     ) {
         let [skin_depth, skin_triangle, .., cursors] = &self.pixels;
@@ -224,9 +213,7 @@ impl Band {
             kernels.order.dispatch(pass, &own(&self.order), self.room.fragments.div_ceil(64));
         });
         begin(encoder, 4, &|pass| {
-            if first {
-                kernels.poison.dispatch(pass, &own(&self.poison), (4 * pixels).div_ceil(64));
-            }
+            kernels.poison.dispatch(pass, &own(&self.poison), (4 * pixels).div_ceil(64));
             kernels.composite.dispatch(pass, &own(&self.composite), by_64);
         });
     }

@@ -176,8 +176,8 @@ pub struct ViewUniform {
     pub near_m: f32,
     /// Unit vector.
     pub up: [f32; 3],
-    /// How many passes came before.
-    pub pass_index: u32,
+    /// Room for fragments.
+    pub most_fragments: u32,
     /// Unit vector.
     pub forward: [f32; 3],
     /// Room for starts.
@@ -188,15 +188,15 @@ pub struct ViewUniform {
     pub size: [u32; 2],
     /// First row of the band and the one past its last.
     pub rows: [u32; 2],
-    /// Room for fragments.
-    pub most_fragments: u32,
     /// Room for stretches.
     pub most_stretches: u32,
+    /// Nothing.
+    pub padding: u32,
 }
 
 impl ViewUniform {
     /// Of a view and a band of its rows; room for nothing.
-    pub fn new(view: &View, rows: [u32; 2], pass_index: u32) -> Self {
+    pub fn new(view: &View, rows: [u32; 2]) -> Self {
         let [right, up, forward] = view.axes.map(|axis| axis.to_array());
         Self {
             eye_m: view.eye_m.to_array(),
@@ -204,14 +204,14 @@ impl ViewUniform {
             right,
             near_m: view.near_m,
             up,
-            pass_index,
+            most_fragments: 0,
             forward,
             most_starts: 0,
             centre_px: view.centre_px.to_array(),
             size: view.size.map(|n| n as u32),
             rows,
-            most_fragments: 0,
             most_stretches: 0,
+            padding: 0,
         }
     }
 }

@@ -14,15 +14,13 @@ mod scene;
 use super::march::volume::Volume;
 use super::mean::MeanShadow;
 use super::pelt::{Lighting, Pelt};
-use super::picture::{Counts, Picture, Row, Settings, finish, put, shift, subdivisions};
+use super::picture::{Counts, Picture, Row, Settings, add, finish, subdivisions};
 use super::resolve::Blending;
-use super::strands::thin::Thinning;
-use super::view::View;
 use crate::data::camera::Camera;
 use crate::data::film::Film;
 use crate::error::Result;
 use crate::gpu::Gpu;
-use crate::math::{Vec2, Vec3};
+use crate::math::Vec3;
 use band::{Band, STEPS};
 use kernels::Kernels;
 use plan::Plan;
@@ -42,11 +40,8 @@ pub fn draw(
     settings: &Settings,
     budget_bytes: usize,
 ) -> Result<Picture> {
-    let passes = settings.passes.max(1);
-    let view = |shift_px| View::new(camera, pelt.skin.origin_m, settings.size, shift_px);
-    let middle = view(Vec2::ZERO)?;
-    let views = (0..passes).map(|pass| view(shift(pass, passes))).collect::<Result<Vec<_>>>()?;
-    let thinned = pelt.guard.and_then(|(strands, _)| Thinning::new(&middle, settings.hair_px).of(strands));
+    let view = settings.view(camera, pelt.skin.origin_m)?;
+    let thinned = pelt.guard.and_then(|(strands, _)| settings.thinning(&view).of(strands));
     let guard = pelt.guard.map(|(strands, fibre)| (thinned.as_ref().unwrap_or(strands), fibre));
     let pelt = &Pelt { guard, ..*pelt };
     let mut picture = Picture { film: Film::default(), rows: Vec::new(), counts: Counts::default() };
@@ -57,12 +52,12 @@ pub fn draw(
 
     let start = Instant::now();
     let normals = pelt.skin.smooth_normals();
-    let subdivisions = subdivisions(pelt, &middle, &settings.resolution);
+    let subdivisions = subdivisions(pelt, &view, settings);
     let volume = Volume::new(pelt, &normals, lighting.key.to_light, settings.resolution, subdivisions);
     let mean = MeanShadow::new(pelt, lighting.key.to_light);
     let (volume, mean) = (volume.as_ref(), mean.as_ref());
     let most_bytes = budget_bytes / 2;
-    let scene = GpuScene::new(gpu, &kernels, pelt, lighting, settings, &normals, volume, mean, &middle, most_bytes)?;
+    let scene = GpuScene::new(gpu, &kernels, pelt, lighting, settings, &normals, volume, mean, &view, most_bytes)?;
     let filled_ms = scene.fill_ms.as_ref().map_or(0.0, |ms| ms.iter().sum());
     add_row(&mut picture, "shell", Some(ms_since(start) - filled_ms), scene.bytes[0]);
     for (i, name) in ["densities", "shadows"].into_iter().enumerate() {
@@ -70,17 +65,17 @@ pub fn draw(
     }
 
     let largest = gpu.largest_storage_bytes() as usize;
-    let mut plan = Plan::new(settings.size, budget_bytes, largest);
+    let mut plan = Plan::new(view.size, budget_bytes, largest);
     let mut band = Band::new(gpu, &kernels, &scene, plan.room)?;
-    let lit = band.light(gpu, &kernels, &scene, &middle)?;
+    let lit = band.light(gpu, &kernels, &scene, &view)?;
     add_row(&mut picture, "shaded strands", lit, scene.bytes[1]);
-    let [width, height] = settings.size;
-    picture.film = Film::of_layers(width, height, settings.layers);
+    picture.film = Film::of_layers(settings.size[0], settings.size[1], settings.layers);
+    let height = view.size[1];
     let mut row = 0;
     while row < height {
         let rows = [row as u32, (row + plan.rows).min(height) as u32];
-        let drawn = band.draw(gpu, &kernels, &scene, &views, rows)?;
-        if drawn.totals.iter().any(|totals| totals.overflow != 0) {
+        let drawn = band.draw(gpu, &kernels, &scene, &view, rows)?;
+        if drawn.totals.overflow != 0 {
             plan = plan.grown(&drawn.totals)?;
             drop(band);
             band = Band::new(gpu, &kernels, &scene, plan.room)?;
@@ -89,17 +84,15 @@ pub fn draw(
         for (i, name) in STEPS.into_iter().enumerate() {
             add_row(&mut picture, name, drawn.ms.as_ref().map(|ms| ms[i]), room_bytes(&plan, i));
         }
-        for totals in &drawn.totals {
-            picture.counts.fragments += u64::from(totals.fragments);
-            picture.counts.steps += u64::from(totals.steps);
-        }
-        unpack(&mut picture.film, row * width, &drawn.film);
+        picture.counts.fragments += u64::from(drawn.totals.fragments);
+        picture.counts.steps += u64::from(drawn.totals.steps);
+        unpack(&mut picture.film, settings.edge_samples(), row, &drawn.film);
         row = rows[1] as usize;
     }
-    picture.counts.strands = (scene.strand_count * passes) as u64;
-    picture.counts.pieces = (scene.piece_count * passes) as u64;
+    picture.counts.strands = scene.strand_count as u64;
+    picture.counts.pieces = scene.piece_count as u64;
     picture.counts.subelements = scene.stored_bytes[0] as u64;
-    finish(&mut picture.film, 1.0 / passes as f32);
+    finish(&mut picture.film, settings.edge_samples());
     Ok(picture)
 }
 
@@ -130,19 +123,21 @@ fn add_row(picture: &mut Picture, name: &'static str, ms: Option<f64>, bytes: us
     }
 }
 
-/// Copies the sums of a band, four planes of its pixels, to a film from pixel `first` on.
-fn unpack(film: &mut Film, first: usize, planes: &[[f32; 4]]) {
+/// Adds the samples of a band, four planes of them, to a film's pixels from the samples' row `first` on.
+fn unpack(film: &mut Film, edge_samples: usize, first: usize, planes: &[[f32; 4]]) {
     let count = planes.len() / 4;
+    let width = film.width * edge_samples;
     let rgb = |v: &[f32; 4]| Vec3::new(v[0], v[1], v[2]);
     for i in 0..count {
+        let at = (first + i / width) / edge_samples * film.width + i % width / edge_samples;
         let [radiance, albedo, tangent, normal] = [0, 1, 2, 3].map(|plane| &planes[plane * count + i]);
-        put(&mut film.radiance, first + i, rgb(radiance));
-        put(&mut film.alpha, first + i, radiance[3]);
-        put(&mut film.albedo, first + i, rgb(albedo));
-        put(&mut film.depth_m, first + i, albedo[3]);
-        put(&mut film.tangent, first + i, rgb(tangent));
-        put(&mut film.guard, first + i, tangent[3]);
-        put(&mut film.normal, first + i, rgb(normal));
-        put(&mut film.undercoat, first + i, normal[3]);
+        add(&mut film.radiance, at, rgb(radiance));
+        add(&mut film.alpha, at, radiance[3]);
+        add(&mut film.albedo, at, rgb(albedo));
+        add(&mut film.depth_m, at, albedo[3]);
+        add(&mut film.tangent, at, rgb(tangent));
+        add(&mut film.guard, at, tangent[3]);
+        add(&mut film.normal, at, rgb(normal));
+        add(&mut film.undercoat, at, normal[3]);
     }
 }

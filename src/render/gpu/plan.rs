@@ -62,9 +62,8 @@ impl Plan {
     ///
     /// # Errors
     /// [`Kind::Device`] where a single row does not fit.
-    pub fn grown(self, totals: &[Totals]) -> Result<Self> {
-        let need = |of: fn(&Totals) -> u32| totals.iter().map(|t| of(t) as usize).max().unwrap_or(0);
-        let needs = [need(|t| t.starts), need(|t| t.fragments), need(|t| t.stretches)];
+    pub fn grown(self, totals: &Totals) -> Result<Self> {
+        let needs = [totals.starts, totals.fragments, totals.stretches].map(|n| n as usize);
         let most = [self.most.starts, self.most.fragments, self.most.stretches];
         let room = [self.room.starts, self.room.fragments, self.room.stretches];
         let short = (0..3).any(|i| needs[i] > room[i]);

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::gpu::{Gpu, Timer};
 use crate::math::Vec3;
 use crate::render::march::enter;
-use crate::render::march::volume::Volume;
+use crate::render::march::volume::{TABLES, Volume};
 use crate::render::mean::MeanShadow;
 use crate::render::pelt::{Lighting, Pelt};
 use crate::render::picture::Settings;
@@ -134,7 +134,7 @@ impl GpuScene {
             uniform.clump_spacing_m = undercoat.clump_spacing_m;
             uniform.clump_strength = undercoat.clump_strength;
         }
-        let mut tables = volume.map_or(vec![0.0; 2 * Table::VALUES], |v| v.tables().concat());
+        let mut tables = volume.map_or(vec![0.0; TABLES * Table::VALUES], |v| v.tables().concat());
         tables.extend(mean.map_or(Vec::new(), MeanShadow::of_vertices));
         let offsets_m = volume.map_or(&[][..], |v| &v.shell().offsets_m);
         let vertices = VertexItem::of(pelt, normals, offsets_m);

@@ -32,8 +32,11 @@ pub struct Resolution {
     pub subelement_px: f32,
     /// Most subdivisions of a triangle.
     pub most_subdivisions: u32,
-    /// How many subdivisions fewer the stored shadow has.
+    /// How many subdivisions fewer the stored shadow has, where `coarsest_details` does not ask for more.
     pub shadow_coarser: u32,
+    /// Largest sub-elements of density, in finest details of clumps and pattern; those of the shadow are at most twice as
+    /// large.
+    pub coarsest_details: f32,
     /// Pattern of the density; none for the mean density everywhere but for clumps.
     pub pattern: Option<Pattern>,
 }
@@ -45,9 +48,18 @@ impl Default for Resolution {
             subelement_px: 1.5,
             most_subdivisions: 7,
             shadow_coarser: 2,
+            coarsest_details: f32::INFINITY,
             pattern: Some(Pattern::default()),
         }
     }
+}
+
+/// How many [`Volume::tables`] there are.
+pub const TABLES: usize = 3;
+
+/// Subdivisions that split an edge into parts of about `part_m`.
+pub fn splits(edge_m: f32, part_m: f32) -> u32 {
+    libm::roundf(libm::log2f((edge_m / part_m).max(1.0))) as u32
 }
 
 /// A vertex of the skin and the shell over it.
@@ -88,6 +100,8 @@ pub struct Volume<'a> {
     reaching: Table,
     /// Hair area per skin area above a height, of both kinds.
     above: Table,
+    /// Where between the levels of the stored shadow a height lies.
+    level: Table,
 }
 
 impl<'a> Volume<'a> {
@@ -110,6 +124,12 @@ impl<'a> Volume<'a> {
         let above = Table::new(|t| {
             let height_m = t * undercoat.height_m;
             own.above(height_m) + guard.map_or(0.0, |layer| layer.above(height_m))
+        });
+        let last_level = resolution.layers.max(1) as f32;
+        let level = Table::new(|t| {
+            let low = (t * last_level).floor().min(last_level - 1.0);
+            let [below, here, over] = [low, t * last_level, low + 1.0].map(|level| above.at(level / last_level));
+            if over < below { low + (here - below) / (over - below) } else { t * last_level }
         });
         let shell = Shell::new(pelt.skin, pelt.fields, undercoat);
         let fields = pelt.fields;
@@ -135,6 +155,7 @@ impl<'a> Volume<'a> {
             shadows: Shadows::new(to_key, triangles),
             reaching: Table::new(|t| undercoat.reaching(t)),
             above,
+            level,
             shell,
         })
     }
@@ -150,9 +171,16 @@ impl<'a> Volume<'a> {
     }
 
     /// By height in 64ths of the shell's: the share of hairs that reach it; the hair area of both kinds above it per skin
-    /// area.
-    pub fn tables(&self) -> [&[f32]; 2] {
-        [self.reaching.values(), self.above.values()]
+    /// area; where between the stored shadow's levels it lies.
+    pub fn tables(&self) -> [&[f32]; TABLES] {
+        [self.reaching.values(), self.above.values(), self.level.values()]
+    }
+
+    /// Where between the stored shadow's levels heights lie: linear there is what a flat coat's shadow is in between, which
+    /// falls off fast towards the tips.
+    #[inline(always)]
+    pub fn level<I: Isa>(&self, t: F32s<I>) -> F32s<I> {
+        self.level.at_lanes(t)
     }
 
     /// The corners of a triangle.
@@ -207,7 +235,10 @@ impl<'a> Volume<'a> {
 
     /// Subdivisions of the stored shadow of a triangle.
     pub fn shadow_subdivisions(&self, triangle: u32) -> u32 {
-        u32::from(self.subdivisions[triangle as usize]).saturating_sub(self.resolution.shadow_coarser)
+        let d = self.subdivisions(triangle);
+        let coarsest_m = 2.0 * self.resolution.coarsest_details * self.shell.undercoat.detail_m();
+        let least = splits(self.shell.skin.mean_edge_m(triangle as usize), coarsest_m);
+        d.saturating_sub(self.resolution.shadow_coarser).max(least.min(d))
     }
 
     /// The steps of `length_m` that begin at `from`.

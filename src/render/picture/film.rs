@@ -5,6 +5,7 @@ use crate::math::Vec3;
 use crate::render::bins::{Grid, TILE};
 use crate::render::resolve::Pixel;
 use std::mem::take;
+use std::ops::AddAssign;
 use std::ops::Range;
 
 /// One row of tiles of a film, to be filled by one thread.
@@ -12,6 +13,8 @@ pub(super) struct FilmRows<'a> {
     /// Row of tiles within the band.
     pub(super) row: usize,
     width: usize,
+    /// Samples along a pixel's edge.
+    samples: usize,
     radiance: &'a mut [Vec3],
     alpha: &'a mut [f32],
     depth_m: &'a mut [f32],
@@ -23,42 +26,45 @@ pub(super) struct FilmRows<'a> {
 }
 
 impl FilmRows<'_> {
-    /// Depths are still weighted by alpha: passes add up, [`finish`] divides.
-    pub(super) fn set(&mut self, y: usize, x: usize, pixel: &Pixel, depth_scale: f32) {
-        let at = y * self.width + x;
-        put(self.radiance, at, pixel.radiance);
-        put(self.alpha, at, pixel.alpha);
-        put(self.depth_m, at, pixel.z_m * depth_scale);
-        put(self.albedo, at, pixel.albedo);
-        put(self.tangent, at, pixel.tangent);
-        put(self.normal, at, pixel.normal);
-        put(self.guard, at, pixel.guard);
-        put(self.undercoat, at, pixel.undercoat);
+    /// Adds the sample in column `x` and, from the tiles' first one, row `y`: samples add up, [`finish`] divides. Depths are
+    /// still weighted by alpha.
+    pub(super) fn add(&mut self, y: usize, x: usize, sample: &Pixel, depth_scale: f32) {
+        let at = y / self.samples * self.width + x / self.samples;
+        add(self.radiance, at, sample.radiance);
+        add(self.alpha, at, sample.alpha);
+        add(self.depth_m, at, sample.z_m * depth_scale);
+        add(self.albedo, at, sample.albedo);
+        add(self.tangent, at, sample.tangent);
+        add(self.normal, at, sample.normal);
+        add(self.guard, at, sample.guard);
+        add(self.undercoat, at, sample.undercoat);
     }
 }
 
-/// Sets a pixel of a layer, where the film has it.
-pub(in crate::render) fn put<T>(layer: &mut [T], at: usize, value: T) {
+/// Adds to a pixel of a layer, where the film has it.
+pub(in crate::render) fn add<T: AddAssign>(layer: &mut [T], at: usize, value: T) {
     if let Some(out) = layer.get_mut(at) {
-        *out = value;
+        *out += value;
     }
 }
 
-pub(super) fn film_rows<'a>(film: &'a mut Film, grid: &Grid) -> Vec<FilmRows<'a>> {
-    let width = film.width;
-    let pixels = grid.first_row * TILE * width..((grid.first_row + grid.rows) * TILE).min(film.height) * width;
-    let mut radiance = rows(&mut film.radiance, &pixels, width, grid.rows);
-    let mut alpha = rows(&mut film.alpha, &pixels, width, grid.rows);
-    let mut depth_m = rows(&mut film.depth_m, &pixels, width, grid.rows);
-    let mut albedo = rows(&mut film.albedo, &pixels, width, grid.rows);
-    let mut tangent = rows(&mut film.tangent, &pixels, width, grid.rows);
-    let mut normal = rows(&mut film.normal, &pixels, width, grid.rows);
-    let mut guard = rows(&mut film.guard, &pixels, width, grid.rows);
-    let mut undercoat = rows(&mut film.undercoat, &pixels, width, grid.rows);
+/// The rows of tiles of a band; of `samples` along a pixel's edge, which divide a tile.
+pub(super) fn film_rows<'a>(film: &'a mut Film, grid: &Grid, samples: usize) -> Vec<FilmRows<'a>> {
+    let (width, edge) = (film.width, TILE / samples);
+    let pixels = grid.first_row * edge * width..((grid.first_row + grid.rows) * edge).min(film.height) * width;
+    let mut radiance = rows(&mut film.radiance, &pixels, edge * width, grid.rows);
+    let mut alpha = rows(&mut film.alpha, &pixels, edge * width, grid.rows);
+    let mut depth_m = rows(&mut film.depth_m, &pixels, edge * width, grid.rows);
+    let mut albedo = rows(&mut film.albedo, &pixels, edge * width, grid.rows);
+    let mut tangent = rows(&mut film.tangent, &pixels, edge * width, grid.rows);
+    let mut normal = rows(&mut film.normal, &pixels, edge * width, grid.rows);
+    let mut guard = rows(&mut film.guard, &pixels, edge * width, grid.rows);
+    let mut undercoat = rows(&mut film.undercoat, &pixels, edge * width, grid.rows);
     (0..grid.rows)
         .map(|row| FilmRows {
             row,
             width,
+            samples,
             radiance: take(&mut radiance[row]),
             alpha: take(&mut alpha[row]),
             depth_m: take(&mut depth_m[row]),
@@ -71,33 +77,19 @@ pub(super) fn film_rows<'a>(film: &'a mut Film, grid: &Grid) -> Vec<FilmRows<'a>
         .collect()
 }
 
-/// A layer's pixels of each of `count` rows of tiles; none of a layer that the film does not have.
-fn rows<'a, T>(layer: &'a mut [T], pixels: &Range<usize>, width: usize, count: usize) -> Vec<&'a mut [T]> {
+/// A layer's pixels of each of `count` rows of tiles of `size` pixels; none of a layer that the film does not have.
+fn rows<'a, T>(layer: &'a mut [T], pixels: &Range<usize>, size: usize, count: usize) -> Vec<&'a mut [T]> {
     let mut rows: Vec<&mut [T]> = match layer.get_mut(pixels.clone()) {
-        Some(layer) => layer.chunks_mut(TILE * width).collect(),
+        Some(layer) => layer.chunks_mut(size).collect(),
         None => Vec::new(),
     };
     rows.resize_with(count, Default::default);
     rows
 }
 
-/// Adds one pass to the sum of those before it.
-pub(super) fn add(sum: &mut Film, film: &Film) {
-    fn all<T: Copy + std::ops::AddAssign>(sum: &mut [T], values: &[T]) {
-        sum.iter_mut().zip(values).for_each(|(s, &v)| *s += v);
-    }
-    all(&mut sum.radiance, &film.radiance);
-    all(&mut sum.alpha, &film.alpha);
-    all(&mut sum.depth_m, &film.depth_m);
-    all(&mut sum.albedo, &film.albedo);
-    all(&mut sum.tangent, &film.tangent);
-    all(&mut sum.normal, &film.normal);
-    all(&mut sum.guard, &film.guard);
-    all(&mut sum.undercoat, &film.undercoat);
-}
-
-/// Scales sums over passes to means, and depths to means over what was hit.
-pub(in crate::render) fn finish(film: &mut Film, scale: f32) {
+/// Scales sums over samples to means, and depths to means over what was hit.
+pub(in crate::render) fn finish(film: &mut Film, edge_samples: usize) {
+    let scale = 1.0 / (edge_samples * edge_samples) as f32;
     for (depth, &alpha) in film.depth_m.iter_mut().zip(&film.alpha) {
         *depth = if alpha > 0.0 { *depth / alpha } else { 0.0 };
     }

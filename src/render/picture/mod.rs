@@ -7,7 +7,7 @@ mod tile;
 mod undercoat;
 
 use super::march::Stepping;
-use super::march::volume::{Resolution, Volume};
+use super::march::volume::{Resolution, Volume, splits};
 use super::mean::MeanShadow;
 use super::pelt::{Lighting, Pelt};
 use super::resolve::Blending;
@@ -17,9 +17,8 @@ use crate::data::camera::Camera;
 use crate::data::film::{Film, Layers};
 use crate::error::Result;
 use crate::fur::undercoat::Undercoat;
-use crate::math::{Vec2, sampling};
-use film::add;
-pub(in crate::render) use film::{finish, put};
+use crate::math::DVec3;
+pub(in crate::render) use film::{add, finish};
 use pass::Pass;
 use std::time::Instant;
 
@@ -28,8 +27,9 @@ use std::time::Instant;
 pub struct Settings {
     /// Pixels per row and rows.
     pub size: [usize; 2],
-    /// Passes at different places within the pixels, averaged; at least 1. Andersen et al. 2016 use 4.
-    pub passes: usize,
+    /// Pixels are drawn as 2^halvings × 2^halvings samples, at most [`MOST_HALVINGS`], and averaged. Andersen et al. 2016 use
+    /// four samples.
+    pub halvings: u32,
     /// How guard hair and undercoat are ordered.
     pub blending: Blending,
     /// How finely rays are followed through undercoat.
@@ -51,7 +51,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             size: [512, 512],
-            passes: 1,
+            halvings: 0,
             blending: Blending::Virtual { fragments: 8 },
             stepping: Stepping::default(),
             resolution: Resolution::default(),
@@ -64,7 +64,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// One pass, no finer than a first look needs: hair and sub-elements as fine as pixels show them.
+    /// One sample per pixel, no finer than a first look needs: hair and sub-elements as fine as pixels show them.
     pub fn preview(size: [usize; 2]) -> Self {
         Self {
             size,
@@ -76,17 +76,39 @@ impl Settings {
         }
     }
 
-    /// Andersen et al. 2016's four passes, with shorter steps and more virtual fragments.
+    /// Andersen et al. 2016's four samples per pixel, with shorter steps and more virtual fragments.
     pub fn best(size: [usize; 2]) -> Self {
         Self {
             size,
-            passes: 4,
+            halvings: 1,
             blending: Blending::Virtual { fragments: 16 },
-            stepping: Stepping { depth: 0.15, layers: 1.0 },
+            stepping: Stepping { depth: 0.15, layers: 0.25 },
+            resolution: Resolution { coarsest_details: 2.0, ..Resolution::default() },
             ..Self::default()
         }
     }
+
+    /// Samples along a pixel's edge.
+    pub fn edge_samples(&self) -> usize {
+        1 << self.halvings.min(MOST_HALVINGS)
+    }
+
+    /// How hair too thin for its pixels is drawn in a view of samples.
+    pub(in crate::render) fn thinning(&self, view: &View) -> Thinning {
+        Thinning::new(view, self.hair_px * self.edge_samples() as f32)
+    }
+
+    /// What the camera shows, sample by sample, of a mesh at `origin_m`.
+    ///
+    /// # Errors
+    /// As [`View::new`].
+    pub(in crate::render) fn view(&self, camera: &Camera, origin_m: DVec3) -> Result<View> {
+        View::new(camera, origin_m, self.size.map(|n| n * self.edge_samples()))
+    }
 }
+
+/// Most halvings of a pixel's edge: a tile's 32 samples are then four pixels.
+pub const MOST_HALVINGS: u32 = 3;
 
 /// A step's cost: one row of Andersen et al. 2016, Table 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,7 +128,7 @@ pub struct Picture {
     pub film: Film,
     /// Time and memory per step.
     pub rows: Vec<Row>,
-    /// Strands drawn, pieces and fragments of them, summed over passes and bands.
+    /// Strands drawn, pieces and fragments of them, summed over bands.
     pub counts: Counts,
 }
 
@@ -131,23 +153,18 @@ pub struct Counts {
 /// Names what keeps the camera from looking anywhere, or a scattering parameter out of range.
 pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Picture> {
     let mut picture = Picture { film: Film::default(), rows: Vec::new(), counts: Counts::default() };
-    let passes = settings.passes.max(1);
     let normals = pelt.skin.smooth_normals();
     let start = Instant::now();
-    let middle = View::new(camera, pelt.skin.origin_m, settings.size, Vec2::ZERO)?;
-    let subdivisions = subdivisions(pelt, &middle, &settings.resolution);
+    let view = settings.view(camera, pelt.skin.origin_m)?;
+    let subdivisions = subdivisions(pelt, &view, settings);
     let volume = Volume::new(pelt, &normals, lighting.key.to_light, settings.resolution, subdivisions);
     let mean = MeanShadow::new(pelt, lighting.key.to_light);
-    let thinning = Thinning::new(&middle, settings.hair_px);
     let bytes = volume.as_ref().map_or(0, |v| v.shell().bytes()) + mean.as_ref().map_or(0, MeanShadow::bytes);
     row(&mut picture, "shell", start, bytes);
-    for pass in 0..passes {
-        let view = View::new(camera, pelt.skin.origin_m, settings.size, shift(pass, passes))?;
-        let film = Pass::new(pelt, lighting, &normals, volume.as_ref(), mean.as_ref(), view, thinning, settings)?
-            .run(&mut picture);
-        if pass == 0 { picture.film = film } else { add(&mut picture.film, &film) }
-    }
-    finish(&mut picture.film, 1.0 / passes as f32);
+    let thinning = settings.thinning(&view);
+    let scene = Pass::new(pelt, lighting, &normals, volume.as_ref(), mean.as_ref(), view, thinning, settings)?;
+    picture.film = scene.run(&mut picture);
+    finish(&mut picture.film, settings.edge_samples());
     if let Some(volume) = &volume {
         let [density, shadow] = volume.bytes();
         let share = 1.0 / rayon::current_num_threads() as f64;
@@ -163,31 +180,30 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
     Ok(picture)
 }
 
-/// Where within the pixels one of several passes looks, from their middles, px.
-///
-/// Their mean is the middle: four points of the sequence alone would move the picture by a fifth of a pixel.
-pub(in crate::render) fn shift(pass: usize, passes: usize) -> Vec2 {
-    let at = |pass: usize| sampling::r2(pass as u64, 1 << 63);
-    let mean = (0..passes).map(at).fold(Vec2::ZERO, |sum, point| sum + point) / passes.max(1) as f32;
-    at(pass) - mean
+/// Subdivisions d per triangle: sub-elements about as large in pixels as asked for, or as finely as clumps need it where
+/// that can be stored, but no finer than what there is to see.
+pub(in crate::render) fn subdivisions(pelt: &Pelt<'_>, view: &View, settings: &Settings) -> Vec<u8> {
+    let Some(fibre) = pelt.undercoat else { return Vec::new() };
+    let resolution = &settings.resolution;
+    let focal_px = view.focal_px / settings.edge_samples() as f32;
+    let detail_m = Undercoat::new(fibre, resolution.pattern).detail_m();
+    let most = resolution.most_subdivisions.min(10);
+    let all = |coarsest_m: f32| -> Vec<u8> {
+        let of = |t| {
+            let nearest_m = pelt.skin.corners_m(t).map(|p| view.camera_from_world(p).z);
+            let nearest_m = nearest_m.into_iter().fold(f32::INFINITY, f32::min);
+            let wanted_m = resolution.subelement_px * nearest_m.max(view.near_m) / focal_px;
+            splits(pelt.skin.mean_edge_m(t), wanted_m.min(coarsest_m).max(detail_m)).min(most) as u8
+        };
+        (0..pelt.skin.triangles.len()).map(of).collect()
+    };
+    let fine = all(resolution.coarsest_details * detail_m);
+    let bytes = fine.iter().map(|&d| 1_usize << (2 * d)).sum::<usize>() * resolution.layers as usize;
+    if bytes <= MOST_FINE_BYTES { fine } else { all(f32::INFINITY) }
 }
 
-/// Subdivisions d per triangle: sub-elements about as large as asked for on the picture, but no finer than what there is
-/// to see.
-pub(in crate::render) fn subdivisions(pelt: &Pelt<'_>, view: &View, resolution: &Resolution) -> Vec<u8> {
-    let Some(fibre) = pelt.undercoat else { return Vec::new() };
-    let detail_m = Undercoat::new(fibre, resolution.pattern).detail_m();
-    (0..pelt.skin.triangles.len())
-        .map(|t| {
-            let corners = pelt.skin.corners_m(t);
-            let edge_m = (0..3).map(|i| corners[i].distance(corners[(i + 1) % 3])).sum::<f32>() / 3.0;
-            let nearest_m = corners.map(|p| view.camera_from_world(p).z).into_iter().fold(f32::INFINITY, f32::min);
-            let wanted_m = resolution.subelement_px * nearest_m.max(view.near_m) / view.focal_px;
-            let splits = edge_m / wanted_m.max(detail_m);
-            libm::roundf(libm::log2f(splits.max(1.0))).clamp(0.0, resolution.most_subdivisions.min(10) as f32) as u8
-        })
-        .collect()
-}
+/// Bytes of density up to which sub-elements are as fine as clumps need them, whatever pixels ask for.
+const MOST_FINE_BYTES: usize = 256 << 20;
 
 /// Rows of steps that ran tile by tile since `start`, by their shares of the threads' time.
 fn shares<const N: usize>(picture: &mut Picture, start: Instant, parts: [(&'static str, u64); N]) {

@@ -1,4 +1,4 @@
-//! One pass over the picture: skin, then strands, band by band.
+//! From the skin to the film, band by band. Pixels are samples here: the film averages them.
 
 use super::film::film_rows;
 use super::tile::{Place, Scratch};
@@ -24,7 +24,7 @@ use crate::render::view::View;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// What a pass draws, and through which view.
+/// What is drawn, and through which view.
 pub(super) struct Pass<'a> {
     pub(super) pelt: &'a Pelt<'a>,
     pub(super) lighting: &'a Lighting,
@@ -97,35 +97,30 @@ impl<'a> Pass<'a> {
     }
 
     pub(super) fn run(&self, picture: &mut Picture) -> Film {
-        let [width, height] = self.settings.size;
-        let mut film = Film::of_layers(width, height, self.settings.layers);
-        let whole = Grid::whole(self.settings.size);
+        let Settings { size, layers, .. } = *self.settings;
+        let mut film = Film::of_layers(size[0], size[1], layers);
+        let [width, height] = self.view.size;
+        let whole = Grid::whole(self.view.size);
 
         let start = Instant::now();
         let triangles = self.pelt.skin.triangles.len();
         let skin_bins = Bins::new(&whole, triangles, |t| flat::reach(&self.view, &self.corners(t as u32)));
-        let tiles: Vec<SkinTile> = (0..whole.columns * whole.rows)
-            .into_par_iter()
-            .map(|tile| {
-                let (column, row) = (tile % whole.columns, tile / whole.columns);
-                SkinTile::draw(
-                    &self.view,
-                    column,
-                    row,
-                    skin_bins.of(tile),
-                    |t| self.corners(t),
-                    |t| self.pixels(&flat::reach(&self.view, &self.corners(t))),
-                )
-            })
-            .collect();
-        row(picture, "base mesh", start, skin_bins.bytes() + tiles.len() * TILE * TILE * 8);
+        let skin_tile = |tile: usize| {
+            let (column, row) = (tile % whole.columns, tile / whole.columns);
+            let pixels = |t| self.pixels(&flat::reach(&self.view, &self.corners(t)));
+            SkinTile::draw(&self.view, column, row, skin_bins.of(tile), |t| self.corners(t), pixels)
+        };
+        // Drawn again where it is needed: all tiles at once would take eight bytes per sample.
+        let far_m: Vec<f32> =
+            (0..whole.columns * whole.rows).into_par_iter().map(|tile| skin_tile(tile).far_m).collect();
+        row(picture, "base mesh", start, skin_bins.bytes() + size_of_val(&far_m[..]));
 
         let start = Instant::now();
         let entrances = self.undercoat.as_ref().map(|(volume, _)| Entrances::new(volume, &self.view, &whole));
         row(picture, "shell entrances", start, entrances.as_ref().map_or(0, Entrances::bytes));
 
         let start = Instant::now();
-        let strand_reach = self.strand_reaches(&whole, &tiles);
+        let strand_reach = self.strand_reaches(&whole, &far_m);
         let bands = self.bands(&whole, &strand_reach);
         row(picture, "strand geometry", start, strand_reach.len() * size_of::<Reach>());
 
@@ -137,7 +132,7 @@ impl<'a> Pass<'a> {
             picture.counts.strands += band.strands.len() as u64;
 
             let start = Instant::now();
-            let mut rows = film_rows(&mut film, &grid);
+            let mut rows = film_rows(&mut film, &grid, self.settings.edge_samples());
             // The longest first: none is left to one thread at the end.
             rows.sort_by_key(|rows| std::cmp::Reverse(band.bins.items_of(rows.row * grid.columns, grid.columns)));
             let [fragments, steps, ribbons_ns, march_ns, compositing_ns] = rows
@@ -151,7 +146,8 @@ impl<'a> Pass<'a> {
                         let from = [column * TILE, (grid.first_row + row) * TILE];
                         let to = [(from[0] + TILE).min(width), (from[1] + TILE).min(height)];
                         let in_band = row * grid.columns + column;
-                        let place = Place { in_band, in_picture, from, to, skin: &tiles[in_picture] };
+                        let skin = skin_tile(in_picture);
+                        let place = Place { in_band, in_picture, from, to, skin: &skin };
                         scratch.clear();
                         let begun = Instant::now();
                         self.gather(&place, &band, &mut scratch);
@@ -186,7 +182,7 @@ impl<'a> Pass<'a> {
     /// Columns and rows of pixels whose middles may lie in `reach`.
     pub(super) fn pixels(&self, reach: &Reach) -> [std::ops::Range<usize>; 2] {
         [0, 1].map(|axis| {
-            let size = self.settings.size[axis];
+            let size = self.view.size[axis];
             let from = (reach.from[axis] - 0.5).ceil().max(0.0) as usize;
             let to = ((reach.to[axis] - 0.5).floor() + 1.0).max(0.0) as usize;
             from.min(size)..to.min(size)
@@ -194,7 +190,7 @@ impl<'a> Pass<'a> {
     }
 
     /// What each strand may touch; nothing where skin hides it.
-    fn strand_reaches(&self, whole: &Grid, tiles: &[SkinTile]) -> Vec<Reach> {
+    fn strand_reaches(&self, whole: &Grid, far_m: &[f32]) -> Vec<Reach> {
         let Some((strands, _)) = &self.guard else { return Vec::new() };
         (0..strands.len())
             .into_par_iter()
@@ -213,8 +209,7 @@ impl<'a> Pass<'a> {
                 }
                 let nearest = knots.iter().map(|k| k.z_m).fold(f32::INFINITY, f32::min);
                 let (columns, mut rows) = whole.touched(&all);
-                let seen =
-                    rows.any(|row| columns.clone().any(|column| nearest < tiles[row * whole.columns + column].far_m));
+                let seen = rows.any(|row| columns.clone().any(|column| nearest < far_m[row * whole.columns + column]));
                 if seen { all } else { Reach::NOTHING }
             })
             .collect()

@@ -108,7 +108,7 @@ impl Pass<'_> {
             }
             let pixel = resolve::composite(layers, fragments, stretches, blending, opaque, skin_face.as_ref(), face);
             let depth_scale = pixel_ray(&self.view, x, y).length();
-            out.set(y - place.from[1], x, &pixel, depth_scale);
+            out.add(y - place.from[1], x, &pixel, depth_scale);
         }
     }
 

@@ -163,7 +163,7 @@ impl<I: Isa> Traveller<I> for Sight<'_> {
     #[inline(always)]
     fn visit(&mut self, prisms: &Prisms, steps: &Steps<I>, on: Mask<I>) -> Mask<I> {
         let one = F32s::splat(1.0);
-        let shadow = self.shadows.at(steps.b, steps.t, on);
+        let shadow = self.shadows.at(steps.b, self.look.volume.level(steps.t), on);
         let (albedo, radiance) = self.look.shader.look(self.look.volume, prisms, steps, shadow);
         let through = F32s::of(&self.through);
         let left = through * on.select((-steps.depth).exp_negative(), one);

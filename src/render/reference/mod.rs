@@ -20,8 +20,8 @@ use crate::data::camera::Camera;
 use crate::data::film::Film;
 use crate::error::Result;
 use crate::fur::undercoat::Pattern;
+use crate::math::DVec3;
 use crate::math::hash::{combine, unit_f64};
-use crate::math::{DVec3, Vec2};
 use bvh::Ray;
 use guard::Guard;
 use medium::Medium;
@@ -80,7 +80,7 @@ const LEAST_SHARE: f64 = 1.0 / 32.0;
 /// Names what keeps the camera from looking anywhere, or a scattering parameter out of range.
 pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Film> {
     let origin_m = pelt.skin.origin_m;
-    View::new(camera, origin_m, settings.size, Vec2::ZERO)?;
+    View::new(camera, origin_m, settings.size)?;
     let normals = pelt.skin.smooth_normals();
     let skin = Skin::new(pelt.skin);
     let guard = pelt.guard.map(|(strands, _)| Guard::new(strands, pelt.skin));

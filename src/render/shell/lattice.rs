@@ -46,13 +46,13 @@ pub struct Lattices<'a> {
     values: [&'a [u8]; MOST],
     /// 2^d.
     n: Row,
-    layers: f32,
+    last_level: f32,
 }
 
 impl<'a> Lattices<'a> {
     /// No lattice yet, of a volume of so many layers.
     pub fn new(layers: u32) -> Self {
-        Self { values: [&[]; MOST], n: Row([1.0; MOST]), layers: layers as f32 }
+        Self { values: [&[]; MOST], n: Row([1.0; MOST]), last_level: layers as f32 }
     }
 
     /// Puts lane `i` into a lattice.
@@ -64,7 +64,7 @@ impl<'a> Lattices<'a> {
 
     /// Values at places, linear between the three corners and two levels around them; 0 in lanes not in `on`.
     #[inline(always)]
-    pub fn at<I: Isa>(&self, b: Vec3s<I>, t: F32s<I>, on: Mask<I>) -> F32s<I> {
+    pub fn at<I: Isa>(&self, b: Vec3s<I>, level: F32s<I>, on: Mask<I>) -> F32s<I> {
         let (zero, one) = (F32s::splat(0.0), F32s::splat(1.0));
         let n = F32s::of(&self.n);
         let (u, v) = ((b.y * n).max(zero).min(n), (b.z * n).max(zero).min(n));
@@ -78,8 +78,8 @@ impl<'a> Lattices<'a> {
         let rest = one - fu - fv;
         let weights = Vec3s::new(turned.select(-rest, rest), turned.select(one - fv, fu), turned.select(one - fu, fv));
         let per_level = ((n + 1.0) * (n + 2.0) * 0.5).to_whole();
-        let at = t.within(0.0, 1.0) * self.layers;
-        let low = at.floor().min(F32s::splat(self.layers - 1.0));
+        let at = level.within(0.0, self.last_level);
+        let low = at.floor().min(F32s::splat(self.last_level - 1.0));
         let first = low.to_whole().times(per_level);
         let from = self.level(first, &corners, weights, on);
         let to = self.level(first.plus(per_level), &corners, weights, on);
