@@ -56,6 +56,7 @@ pub(super) struct Band {
 }
 
 impl<'a> Pass<'a> {
+    #[expect(clippy::too_many_arguments, reason = "the picture's parts, each of another kind")]
     pub(super) fn new(
         pelt: &'a Pelt<'a>,
         lighting: &'a Lighting,
