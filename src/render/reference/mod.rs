@@ -93,11 +93,17 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
         settings,
     };
     let [width, height] = settings.size;
-    let pixels: Vec<Sum> = (0..width * height)
-        .into_par_iter()
-        .with_max_len(64)
-        .map_init(Scratch::default, |scratch, i| scene.pixel(i % width, i / width, scratch))
-        .collect();
+    let most = settings.samples.max(1);
+    let pixels = if settings.lightness_error <= 0.0 || most <= PILOT {
+        scene.pixels(|at, key, scratch| scene.rays(at, key, most, 1.0, scratch))
+    } else {
+        let pilots: Vec<[f64; 2]> = scene
+            .pixels(|at, key, scratch| scene.rays(at, combine(key, 1), PILOT, 1.0, scratch).variances_of_lightness());
+        scene.pixels(|at, key, scratch| {
+            let (count, share) = scene.wanted(around(at, settings.size).map(|i| pilots[i]));
+            scene.rays(at, key, count, share, scratch)
+        })
+    };
     let mut film = Film::new(width, height);
     for (i, sum) in pixels.into_iter().enumerate() {
         sum.into_film(&mut film, i);
@@ -114,24 +120,28 @@ struct Reference<'a> {
 }
 
 impl Reference<'_> {
-    fn pixel(&self, x: usize, y: usize, scratch: &mut Scratch) -> Sum {
-        let [width, _] = self.settings.size;
-        let key = combine(self.settings.seed, (y * width + x) as u64);
+    /// What `each` makes of every pixel and its key, rows from the top.
+    fn pixels<T: Send>(&self, each: impl Fn([usize; 2], u64, &mut Scratch) -> T + Sync) -> Vec<T> {
+        let [width, height] = self.settings.size;
+        let pixel = |scratch: &mut Scratch, i: usize| {
+            each([i % width, i / width], combine(self.settings.seed, i as u64), scratch)
+        };
+        (0..width * height).into_par_iter().with_max_len(64).map_init(Scratch::default, pixel).collect()
+    }
+
+    /// How many rays a pixel needs, and the share of them whose shadow is to be followed, by the largest of some variances of
+    /// lightness: where hair is sparse, a pilot of one pixel alone may have met none.
+    fn wanted(&self, variances: impl Iterator<Item = [f64; 2]>) -> (usize, f64) {
         let Settings { samples, lightness_error, .. } = *self.settings;
-        let most = samples.max(1);
-        if lightness_error <= 0.0 || most <= PILOT {
-            return self.rays(x, y, key, most, 1.0, scratch);
-        }
-        let pilot = self.rays(x, y, combine(key, 1), PILOT, 1.0, scratch);
-        let [quick, rest] = pilot.variances_of_lightness();
+        let [quick, rest] = variances.fold([0.0_f64; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
         // The share that makes least work of a given error, where following a shadow takes `FOLLOWING` times a ray's work.
         let share = (rest / (FOLLOWING * quick).max(1e-12)).sqrt().clamp(LEAST_SHARE, 1.0);
-        let wanted = (quick + rest / share) / (lightness_error * lightness_error);
-        self.rays(x, y, key, (wanted.ceil() as usize).clamp(PILOT, most), share, scratch)
+        let count = (quick + rest / share) / (lightness_error * lightness_error);
+        ((count.ceil() as usize).clamp(PILOT, samples), share)
     }
 
     /// Sums up `count` rays, of which `share` have their shadow followed.
-    fn rays(&self, x: usize, y: usize, key: u64, count: usize, share: f64, scratch: &mut Scratch) -> Sum {
+    fn rays(&self, [x, y]: [usize; 2], key: u64, count: usize, share: f64, scratch: &mut Scratch) -> Sum {
         let mut sum = Sum::default();
         for sample in 0..count as u64 {
             let [u, v, chosen] = evenly(key, sample);
@@ -157,6 +167,12 @@ impl Reference<'_> {
             _ => Look::default(),
         }
     }
+}
+
+/// A pixel and those around it.
+fn around([x, y]: [usize; 2], [width, height]: [usize; 2]) -> impl Iterator<Item = usize> {
+    let near = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
+    near(y, height).flat_map(move |y| near(x, width).map(move |x| y * width + x))
 }
 
 /// Three numbers in [0, 1): point `index` of Roberts' sequence (2018) in three dimensions, moved by what `key` gives.
