@@ -71,13 +71,23 @@ fn a_plot_shows_every_point_and_is_well_formed() {
     assert!(plot::svg("none", "FLIP", &[]).ends_with("</svg>\n"));
 }
 
+/// Little hair in large clumps: quick to draw.
+const SPARSE: [&str; 6] = [
+    "--set",
+    "guard.density_per_cm2=4",
+    "--set",
+    "undercoat.density_per_cm2=100",
+    "--set",
+    "undercoat.shape.clump={ spacing_mm = 40, strength = 0.35 }",
+];
+
 #[test]
 fn a_sweep_writes_its_three_files() {
     let folder = tempfile::tempdir().unwrap();
     let sweep = |name: &str| {
         let mut command = Command::new(furrier_path());
         command.args(["report", "render", "sample:plane", "--size", "16x16", "--repeats", "1"]);
-        command.args(["--set", "guard.density_per_cm2=4", "--set", "undercoat.density_per_cm2=100"]);
+        command.args(SPARSE);
         command.arg("-o").arg(folder.path().join(name)).assert()
     };
     sweep("out.json").success();
@@ -92,5 +102,42 @@ fn a_sweep_writes_its_three_files() {
     assert_eq!(read("out.csv").lines().count(), points.len() + 1);
     assert!(read("out.svg").starts_with("<svg"));
     sweep("out.txt").code(2);
+    // Against a picture of one's own: of the view it is close to, of another size it is refused.
+    let picture = |size: &str| {
+        let path = folder.path().join(format!("{size}.exr"));
+        let mut command = Command::new(furrier_path());
+        command.args([
+            "render",
+            "sample:plane",
+            "--preset",
+            "mink",
+            "--orbit",
+            "35,20,1",
+            "--size",
+            size,
+            "--quality",
+            "final",
+        ]);
+        command.args(SPARSE);
+        command.arg("-o").arg(&path).assert().success();
+        path
+    };
+    let [own, other] = ["16x16", "8x8"].map(picture);
+    for path in [&own, &other] {
+        let mut command = Command::new(furrier_path());
+        command
+            .args(["report", "render", "sample:plane", "--size", "16x16", "--repeats", "1", "--reference"])
+            .arg(path);
+        command.args(SPARSE);
+        let assert = command.arg("-o").arg(folder.path().join("out.json")).assert();
+        if path == &own {
+            assert.success()
+        } else {
+            assert.code(3)
+        };
+    }
+    let report: serde_json::Value = serde_json::from_str(&read("out.json")).unwrap();
+    assert_eq!(report["points"][1]["flip"], 0.0, "final against itself");
+    [own, other].iter().for_each(|path| std::fs::remove_file(path).unwrap());
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
 }

@@ -6,6 +6,7 @@ use super::output;
 use crate::asset::write;
 use crate::bake::picture::{Grown, Only, Scene};
 use crate::error::{Error, Result};
+use crate::metrics::compare::load;
 use crate::preset::Preset;
 use crate::report::{plot, render, table};
 use crate::viewer;
@@ -34,7 +35,7 @@ enum What {
 Example:
   furrier report render sample:hat -o hat.json --preset mink
 
-Beside hat.json stand hat.csv and hat.svg. Errors are against the finest setting; times are of drawing alone.")]
+Beside hat.json stand hat.csv and hat.svg. Errors are against the finest setting or --reference; times are of drawing alone.")]
 struct Render {
     /// A glTF or OBJ file, or sample:NAME
     input: String,
@@ -59,6 +60,9 @@ struct Render {
     /// Runs of each setting; the quickest counts
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=100))]
     repeats: u32,
+    /// A picture to measure against, of the same view: what `render --quality reference` drew; without, the finest setting
+    #[arg(long, value_name = "FILE")]
+    reference: Option<PathBuf>,
     /// Decides all that is random
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -89,6 +93,8 @@ impl Render {
             output::check(file, &[Path::new(&self.input)])?;
         }
         let size = super::view::size(&self.size)?.map(|n| n as usize);
+        let load_named = |path: &PathBuf| -> Result<_> { Ok((path.display().to_string(), load(path)?)) };
+        let reference = self.reference.as_ref().map(load_named).transpose()?;
         let grown = Grown::new(&Scene {
             input: self.input.clone(),
             preset: Preset::load(&self.preset)?.with_settings(&self.settings)?,
@@ -105,8 +111,10 @@ impl Render {
             size,
             camera: grown.camera(azimuth, elevation, distance, size),
             repeats: self.repeats,
+            reference,
         };
-        let sweep = render::sweep(&grown, &options, &mut |what| tracing::info!("{what}"))?;
+        let sweep = render::sweep(&grown, &options, &mut |what| tracing::info!("{what}"))
+            .map_err(|e| self.reference.iter().fold(e, |e, path| e.with_file(path)))?;
         let title = format!("{}, {}, {} × {}, {}", self.input, self.preset, size[0], size[1], sweep.device);
         let error = format!("FLIP against {}", sweep.yardstick.name);
         let plot = plot::svg(&title, &error, &sweep.points);

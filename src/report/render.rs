@@ -17,9 +17,9 @@ use serde::Serialize;
 #[derive(Clone, Debug, Serialize)]
 pub struct Yardstick {
     /// What it is.
-    pub name: &'static str,
-    /// How long it took, ms.
-    pub ms: f64,
+    pub name: String,
+    /// How long it took, ms; none of a picture that was given.
+    pub ms: Option<f64>,
 }
 
 /// Everything that a sweep found.
@@ -52,6 +52,8 @@ pub struct Options {
     pub camera: Camera,
     /// Runs per point, at least 1; the quickest counts.
     pub repeats: u32,
+    /// What to measure against and what it is called, of the same size and view; else the finest setting is.
+    pub reference: Option<(String, Light)>,
 }
 
 /// A way to draw: what was changed from which defaults, to what.
@@ -65,14 +67,17 @@ struct Way {
 type Change = fn(&mut Settings, f64);
 
 /// Every control of the renderer and the values it is tried at.
-const CONTROLS: [(&str, &[f64], Change); 9] = [
+const CONTROLS: [(&str, &[f64], Change); 10] = [
     ("optical depth of a step", &[0.05, 0.1, 0.5, 1.0, 2.0], |s, v| s.stepping.depth = v as f32),
-    ("length of a step, layers", &[0.5, 1.0, 4.0, 8.0], |s, v| s.stepping.layers = v as f32),
+    ("length of a step, layers", &[0.125, 0.25, 0.5, 1.0, 4.0, 8.0], |s, v| s.stepping.layers = v as f32),
     ("most subdivisions d", &[0.0, 2.0, 4.0, 5.0, 6.0, 8.0], |s, v| s.resolution.most_subdivisions = v as u32),
     ("edge of a sub-element, px", &[0.75, 3.0, 6.0, 12.0], |s, v| s.resolution.subelement_px = v as f32),
     ("largest sub-element, details", &[1.0, 2.0, 4.0], |s, v| s.resolution.coarsest_details = v as f32),
     ("layers", &[4.0, 8.0, 32.0, 64.0], |s, v| s.resolution.layers = v as u32),
     ("virtual fragments", &[1.0, 4.0, 8.0, 16.0, 30.0], |s, v| s.blending = Blending::Virtual { fragments: v as u32 }),
+    ("simplified blending, a per m", &[0.0, 100.0, 1000.0, 10000.0], |s, v| {
+        s.blending = Blending::Simplified { attenuation_per_m: v as f32 };
+    }),
     ("least width of hair, px", &[0.0, 0.25, 0.35, 0.5, 0.7, 1.0, 1.4], |s, v| s.hair_px = v as f32),
     ("samples per pixel", &[1.0, 4.0, 16.0], |s, v| s.halvings = (v as u32).ilog2() / 2),
 ];
@@ -80,13 +85,20 @@ const CONTROLS: [(&str, &[f64], Change); 9] = [
 /// Draws a scene in every way and compares each picture with the yardstick: the finest setting.
 ///
 /// # Errors
-/// As [`Grown::draw`]; `progress` is told what is being drawn.
+/// As [`Grown::draw`], or where the reference is of another size; `progress` is told what is being drawn.
 pub fn sweep(grown: &Grown, options: &Options, progress: &mut dyn FnMut(&str)) -> Result<Sweep> {
     let lighting = studio(&options.camera);
     let draw = |settings: &Settings| grown.draw(&lighting, &options.camera, settings);
-    progress("yardstick");
-    let finest = draw(&finest(options.size))?;
-    let truth = Light::from(&finest.film);
+    let drawn;
+    let (truth, yardstick) = match &options.reference {
+        Some((name, light)) => (light, Yardstick { name: name.clone(), ms: None }),
+        None => {
+            progress("yardstick");
+            let finest = draw(&finest(options.size))?;
+            drawn = Light::from(&finest.film);
+            (&drawn, Yardstick { name: "the finest setting".into(), ms: Some(ms(&finest)) })
+        }
+    };
     let mut points = Vec::new();
     for way in ways(options.size) {
         progress(&format!("{} = {}", way.sweep, way.value));
@@ -97,7 +109,7 @@ pub fn sweep(grown: &Grown, options: &Options, progress: &mut dyn FnMut(&str)) -
                 best = Some(picture);
             }
         }
-        points.extend(best.map(|picture| point(&way, &picture, &truth)).transpose()?);
+        points.extend(best.map(|picture| point(&way, &picture, truth)).transpose()?);
     }
     mark_front(&mut points);
     Ok(Sweep {
@@ -106,7 +118,7 @@ pub fn sweep(grown: &Grown, options: &Options, progress: &mut dyn FnMut(&str)) -
         size: options.size,
         device: format!("cpu, {} threads", rayon::current_num_threads()),
         repeats: options.repeats.max(1),
-        yardstick: Yardstick { name: "the finest setting", ms: ms(&finest) },
+        yardstick,
         points,
     })
 }
@@ -140,7 +152,7 @@ fn finest(size: [usize; 2]) -> Settings {
     Settings {
         halvings: 3,
         blending: Blending::Virtual { fragments: 64 },
-        stepping: Stepping { depth: 0.04, layers: 0.5 },
+        stepping: Stepping { depth: 0.04, layers: 0.125 },
         resolution: Resolution { layers: 64, subelement_px: 0.5, most_subdivisions: 8, ..Resolution::default() },
         ..Settings { size, ..Settings::default() }
     }
