@@ -1,5 +1,6 @@
 //! A picture of a pelt through a camera: bands of rows, and tiles within them (`docs/steps/strands.md`).
 
+mod brush;
 mod film;
 mod gather;
 mod pass;
