@@ -2,14 +2,14 @@
 
 use crate::pelts::{self, Grown};
 use furrier::data::film::{Film, Layers};
-use furrier::math::Vec3;
 use furrier::math::hash::Stream;
 use furrier::math::lanes::{self, Isa};
+use furrier::math::{Vec3, radix};
 use furrier::render::cast::Caster;
 use furrier::render::pelt::Pelt;
 use furrier::render::picture::{Picture, Settings, draw};
 use furrier::render::rays::Rays;
-use furrier::render::resolve::{Blending, composite, settle};
+use furrier::render::resolve::{Blending, Face, Pile, Touch, composite};
 use furrier::render::strands::ribbon::{Narrow, Share, Window, rasterise};
 use furrier::render::strands::{Fragment, Knot};
 use furrier::render::{DepthRange, Scene};
@@ -102,26 +102,57 @@ fn a_hair_thinner_than_a_pixel_covers_its_share() {
 }
 
 #[test]
-fn a_thousand_fragments_at_one_depth_are_ordered_by_id() {
+fn a_thousand_fragments_of_a_pixel_add_up() {
+    let mut pile = Pile::default();
+    let mut fragments = [Fragment::default(); 1000];
+    for id in 0..1000 {
+        let z_m = if id < 500 { 1.0 } else { 2.0 };
+        pile.add(&Touch { z_m, id, coverage: 0.002, opacity: 1.0, streak: id }, 0.0005, &mut fragments);
+    }
+    assert_eq!(pile.len(), 1000);
+    let skin = || None;
+    let pixel = composite(Layers::All, &fragments, &[], Blending::Virtual { fragments: 1 }, 0.001, skin, |f| Face {
+        z_m: f.z_m,
+        radiance: Vec3::splat(f.streak as f32 * 1e-3),
+        ..Default::default()
+    });
+    let left = 0.998_f32.powi(1000);
+    assert!((pixel.alpha - (1.0 - left)).abs() < 1e-4, "{}", pixel.alpha);
+    assert!((pile.through() - left).abs() < 1e-4, "{}", pile.through());
+    let mean = pixel.radiance.x / pixel.alpha;
+    let expected = (0..1000).map(|i| 1e-3 * i as f32 * 0.002 * 0.998_f32.powi(i)).sum::<f32>() / pixel.alpha;
+    assert!((mean - expected).abs() < 1e-3, "{mean}, not {expected}");
+}
+
+#[test]
+fn a_pixels_fragments_are_joined_and_cut_off() {
+    let touch = |z_m, id, coverage| Touch { z_m, id, coverage, opacity: 0.5, streak: id };
+    let mut pile = Pile::default();
+    let mut fragments = [Fragment::default(); 4];
+    for touch in [touch(1.0, 7, 0.4), touch(1.0, 7, 0.4), touch(2.0, 7, 0.4), touch(3.0, 8, 1.0), touch(4.0, 9, 1.0)] {
+        pile.add(&touch, 0.3, &mut fragments);
+    }
+    // A hair's neighbouring pieces cover the pixel once; the last one is hidden.
+    assert_eq!(pile.len(), 2);
+    assert_eq!((fragments[0].z_m, fragments[0].alpha, fragments[0].veil), (1.0, 0.5, 0.5));
+    assert_eq!((fragments[1].z_m, fragments[1].alpha, fragments[1].veil), (3.0, 0.5, 0.25));
+}
+
+#[test]
+fn radix_sort_sorts() {
     let mut random = Stream::new(5);
-    let mut fragments: Vec<Fragment> =
-        (0..1000).map(|id| Fragment::new(if id < 500 { 1.0 } else { 2.0 }, id, [0.002, 1.0], id, 0)).collect();
-    let draw = |fragments: &[Fragment]| {
-        composite(Layers::All, fragments, &[], Blending::Virtual { fragments: 1 }, 0.001, None, |f| {
-            let radiance = Vec3::splat(f.id() as f32 * 1e-3);
-            furrier::render::resolve::Face { z_m: f.z_m(), radiance, ..Default::default() }
-        })
-    };
-    let mut veil = [0.0; 1000];
-    let mut settled = |fragments: &mut [Fragment]| {
-        let count = settle(fragments, &mut veil, 0.0005);
-        draw(&fragments[..count])
-    };
-    let first = settled(&mut fragments);
-    assert!((first.alpha - (1.0 - 0.998_f32.powi(1000))).abs() < 1e-4, "{}", first.alpha);
-    for _ in 0..5 {
-        fragments.sort_by_cached_key(|_| random.bits());
-        assert_eq!(settled(&mut fragments), first);
+    for (count, spread) in
+        [(0, 1.0), (1, 1.0), (90, 1.0), (3000, 1.0), (3000, 1e-3), (3000, 1e-7), (3000, 0.0), (3000, 1e9)]
+    {
+        let key = |number: u64| {
+            let z_m = 0.7 + spread * libm::powf(random.unit(), 6.0);
+            u64::from(z_m.to_bits()) << 32 | number
+        };
+        let mut keys: Vec<u64> = (0..count).map(key).collect();
+        let mut expected = keys.clone();
+        expected.sort_unstable();
+        radix::sort(&mut keys, &mut Vec::new());
+        assert_eq!(keys, expected, "{count} by {spread}");
     }
 }
 

@@ -4,6 +4,7 @@ pub mod fast;
 pub mod hash;
 pub mod lanes;
 pub mod noise;
+pub mod radix;
 pub mod sampling;
 pub mod sparse;
 pub mod split;

@@ -1,12 +1,14 @@
 //! Ribbons of guard hair into the fragments of a tile.
 
-use super::gather::Gathered;
+use super::gather::{Gathered, Row, Stroke};
 use super::pass::{Band, Pass};
 use super::tile::Place;
+use crate::data::film::Layers;
 use crate::data::strands::Strands;
-use crate::math::lanes::{self, F32s, Isa, Row, Scalar, Vec3Row};
-use crate::render::strands::ribbon::{self, Narrow, Share, Window};
-use crate::render::strands::{Fragment, Knot, Streak, radiance_at};
+use crate::math::lanes::{self, F32s, Isa, Scalar, Vec3Row};
+use crate::render::bins::TILE;
+use crate::render::strands::ribbon::{self, Narrow, Window};
+use crate::render::strands::{Knot, Streak, radiance_at};
 
 /// Draws pieces of strands into a tile, the nearest first.
 pub(super) struct Brush<'a, 'p> {
@@ -30,18 +32,18 @@ impl lanes::Work for Brush<'_, '_> {
                 break;
             }
             for &key in some {
-                if let Some(stroke) = self.fetch(f32::from_bits((key >> 32) as u32), key as u32) {
-                    self.stroke::<I>(&stroke);
+                if let Some(piece) = self.fetch(f32::from_bits((key >> 32) as u32), key as u32) {
+                    self.draw::<I>(&piece);
                 }
             }
         }
     }
 }
 
-impl Brush<'_, '_> {
+impl<'a> Brush<'a, '_> {
     /// A piece, where it may be seen.
     #[inline(always)]
-    fn fetch(&self, nearest_m: f32, piece: u32) -> Option<Stroke> {
+    fn fetch(&self, nearest_m: f32, piece: u32) -> Option<Piece<'a>> {
         let (a, b) = (&self.band.knots[piece as usize], &self.band.knots[piece as usize + 1]);
         let Place { from, to, .. } = *self.place;
         let pad = std::f32::consts::SQRT_2 * a.half_px.max(b.half_px);
@@ -52,95 +54,117 @@ impl Brush<'_, '_> {
         }
         let points = self.strands.points_per_strand as u32;
         let strand = piece / points;
-        let id = self.strands.id[self.band.strands[strand as usize] as usize];
-        let looks = self.band.looks[strand as usize];
-        Some(Stroke { a: *a, b: *b, looks, strand, first: (piece - strand * points) as f32, id })
+        let first = piece - strand * points;
+        let id = self.band.ids[strand as usize];
+        Some(Piece { a, b, looks: &self.band.looks[strand as usize], strand: strand as usize, first, id })
     }
 
     #[inline(always)]
-    fn stroke<I: Isa>(&mut self, stroke: &Stroke) {
-        let Stroke { a, b, strand, .. } = stroke;
-        let Some(narrow) = Narrow::new(a, b, self.window) else {
-            ribbon::rasterise(a, b, self.window, |share| {
-                let sites = self.sites(stroke, F32s::<Scalar>::splat(share.along));
-                self.touch(stroke, &share, sites.z_m.0[0], sites.opacity.0[0]);
-                self.guard.keep_streak(|| sites.streak(0, *strand));
+    fn draw<I: Isa>(&mut self, piece: &Piece<'_>) {
+        let before = self.guard.count();
+        match Narrow::new(piece.a, piece.b, self.window) {
+            Some(narrow) => self.narrow::<I>(piece, &narrow),
+            None => self.wide(piece),
+        }
+        if self.guard.count() > before && self.pass.settings.layers != Layers::Light {
+            let points_m = self.strands.points_of_m(self.band.strands[piece.strand] as usize);
+            let first = piece.first as usize;
+            self.guard.keep_stroke(Stroke {
+                tangent: (points_m[first + 1] - points_m[first]).normalize_or_zero(),
+                tint: self.strands.tint[self.band.strands[piece.strand] as usize],
             });
-            return;
-        };
+        }
+    }
+
+    #[inline(always)]
+    fn narrow<I: Isa>(&mut self, piece: &Piece<'_>, narrow: &Narrow) {
+        let Place { from, skin, .. } = *self.place;
+        let (pass, stroke) = (self.pass, self.guard.next_stroke());
+        // Of a row, or a column where the ribbon lies flat, from one to the next and from pixel to pixel.
+        let (down, along) = if narrow.flat { (1, TILE) } else { (TILE, 1) };
+        let [first_row, first_pixel] = if narrow.flat { [from[0], from[1]] } else { [from[1], from[0]] };
         let mut first = narrow.rows[0];
         while first < narrow.rows[1] {
             let found = narrow.rows::<I>(first);
-            let sites = self.sites(stroke, F32s::<I>::of(&found.along));
+            let sites = self.sites(piece, F32s::<I>::of(&found.along));
+            let mut kept = 0_u32;
             for lane in 0..I::LANES.min((narrow.rows[1] - first) as usize) {
-                let (row, begin) = (first + lane as i32, found.begin[lane] as i32);
-                let linear = found.linear.0[lane];
-                for k in 0..found.count[lane] as usize {
-                    let coverage = found.coverage[k].0[lane];
-                    if coverage > 0.0 {
-                        let x = begin + k as i32;
-                        let pixel = if narrow.flat { [row, x] } else { [x, row] };
-                        let share = Share { pixel, coverage, linear, along: 0.0 };
-                        self.touch(stroke, &share, sites.z_m.0[lane], sites.opacity.0[lane]);
-                    }
+                let count = found.count[lane] as usize;
+                if count == 0 {
+                    continue;
                 }
-                self.guard.keep_streak(|| sites.streak(lane, *strand));
+                let line = first as usize + lane;
+                let pixel = (line - first_row) * down + (found.begin[lane] as usize - first_pixel) * along;
+                let row = Row::new(sites.z_m.0[lane], piece.id, sites.opacity.0[lane], pixel, along);
+                let linear = found.linear.0[lane];
+                let shares = found.coverage[..count].iter().map(|coverage| coverage.0[lane]);
+                let any = self.guard.push(row, shares, |at| {
+                    pass.before_skin(piece.a, piece.b, linear, self.place.pixel(at), row.z_m, skin, at)
+                });
+                kept |= u32::from(any) << lane;
             }
             first += I::LANES as i32;
+            if kept == 0 {
+                continue;
+            }
+            let s = F32s::<I>::of(&sites.s);
+            let radiance = radiance_at(piece.looks, s).rows();
+            while kept != 0 {
+                let lane = kept.trailing_zeros() as usize;
+                self.guard.show(Streak { radiance: radiance.lane(lane), s: sites.s.0[lane], stroke });
+                kept &= kept - 1;
+            }
         }
+    }
+
+    /// A ribbon of any width, pixel by pixel.
+    #[inline(always)]
+    fn wide(&mut self, piece: &Piece<'_>) {
+        let (pass, stroke) = (self.pass, self.guard.next_stroke());
+        ribbon::rasterise(piece.a, piece.b, self.window, |share| {
+            let sites = self.sites(piece, F32s::<Scalar>::splat(share.along));
+            let pixel = self.place.at(share.pixel[0] as usize, share.pixel[1] as usize);
+            let row = Row::new(sites.z_m.0[0], piece.id, sites.opacity.0[0], pixel, 1);
+            let skin = self.place.skin;
+            let any = self.guard.push(row, std::iter::once(share.coverage), |at| {
+                pass.before_skin(piece.a, piece.b, share.linear, share.pixel, row.z_m, skin, at)
+            });
+            if any {
+                let radiance = radiance_at(piece.looks, F32s::<Scalar>::of(&sites.s)).rows().lane(0);
+                self.guard.show(Streak { radiance, s: sites.s.0[0], stroke });
+            }
+        });
     }
 
     /// What a hair is like at places `along` a piece.
     #[inline(always)]
-    fn sites<I: Isa>(&self, stroke: &Stroke, along: F32s<I>) -> Sites {
-        let s = (along + stroke.first) * self.pass.per_piece;
+    fn sites<I: Isa>(&self, piece: &Piece<'_>, along: F32s<I>) -> Sites {
+        let s = (along + piece.first as f32) * self.pass.per_piece;
         Sites {
-            z_m: (along * (stroke.b.z_m - stroke.a.z_m) + stroke.a.z_m).row(),
+            z_m: (along * (piece.b.z_m - piece.a.z_m) + piece.a.z_m).row(),
             s: s.row(),
             opacity: self.pass.opacity.at_lanes(s).row(),
-            radiance: radiance_at(&stroke.looks, s).rows(),
-        }
-    }
-
-    /// Adds a fragment where it may be seen.
-    #[inline(always)]
-    fn touch(&mut self, stroke: &Stroke, share: &Share, z_m: f32, opacity: f32) {
-        let at = self.place.at(share.pixel[0] as usize, share.pixel[1] as usize);
-        if z_m <= self.guard.limit_m(at)
-            && (z_m < self.guard.clear_m(at)
-                || self.pass.before_skin(&stroke.a, &stroke.b, share, z_m, self.place.skin, at))
-        {
-            let streak = self.guard.next_streak();
-            self.guard.push(Fragment::new(z_m, stroke.id, [share.coverage, opacity], streak, at as u32));
         }
     }
 }
 
 /// Places on a hair, in lanes.
 struct Sites {
-    z_m: Row,
+    z_m: lanes::Row,
     /// Along the hair, in [0, 1].
-    s: Row,
-    opacity: Row,
-    radiance: Vec3Row,
-}
-
-impl Sites {
-    #[inline(always)]
-    fn streak(&self, lane: usize, strand: u32) -> Streak {
-        Streak { radiance: self.radiance.lane(lane), strand, s: self.s.0[lane] }
-    }
+    s: lanes::Row,
+    opacity: lanes::Row,
 }
 
 /// A piece of a strand.
-struct Stroke {
-    a: Knot,
-    b: Knot,
-    looks: Vec3Row,
+struct Piece<'a> {
+    a: &'a Knot,
+    b: &'a Knot,
+    looks: &'a Vec3Row,
     /// The strand's number in the band.
-    strand: u32,
+    strand: usize,
     /// Its number along the strand.
-    first: f32,
+    first: u32,
     id: u32,
 }
 

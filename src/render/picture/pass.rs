@@ -52,6 +52,8 @@ pub(super) struct Band {
     pub(super) knots: Vec<Knot>,
     /// Logarithms of radiance, one row for each strand.
     pub(super) looks: Vec<Vec3Row>,
+    /// Source index of each strand.
+    pub(super) ids: Vec<u32>,
     pub(super) bins: Bins,
 }
 
@@ -157,7 +159,7 @@ impl<'a> Pass<'a> {
                             self.march(entrances, &place, &mut scratch);
                         }
                         let marched = Instant::now();
-                        self.compose(&place, &band, &scratch, &mut rows);
+                        self.compose(&place, &scratch, &mut rows);
                         let times = [gathered - begun, marched - gathered, marched.elapsed()];
                         for (spent_ns, time) in scratch.spent_ns.iter_mut().zip(times) {
                             *spent_ns += time.as_nanos() as u64;
@@ -219,7 +221,7 @@ impl<'a> Pass<'a> {
     /// Cuts the picture into bands of whole tile rows whose strands fit the budget.
     fn bands(&self, whole: &Grid, reaches: &[Reach]) -> Vec<Grid> {
         let points = self.guard.as_ref().map_or(0, |(strands, _)| strands.points_per_strand);
-        let per_strand = points * (size_of::<Knot>() + 12) + size_of::<Vec3Row>();
+        let per_strand = points * (size_of::<Knot>() + 12) + size_of::<Vec3Row>() + 8;
         let mut starting = vec![0_usize; whole.rows];
         let mut crossing = vec![0_isize; whole.rows + 1];
         for rows in reaches.iter().map(|reach| whole.touched(reach).1).filter(|rows| !rows.is_empty()) {
@@ -280,6 +282,7 @@ impl<'a> Pass<'a> {
             }
             project::reach(&self.view, &knots[i], &knots[i + 1])
         });
-        Band { strands: visible, knots, looks, bins }
+        let ids = visible.iter().map(|&strand| strands.id[strand as usize]).collect();
+        Band { strands: visible, knots, looks, ids, bins }
     }
 }

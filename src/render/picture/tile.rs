@@ -7,17 +7,16 @@ use super::gather::Gathered;
 use super::pass::{Band, Pass};
 use super::undercoat::{self, PixelJourney};
 use crate::data::film::Layers;
-use crate::data::strands::Strands;
-use crate::math::lanes;
 use crate::math::{Vec2, Vec3};
+use crate::math::{lanes, radix};
 use crate::render::bins::TILE;
 use crate::render::flat::{self, Flat, pixel_ray};
 use crate::render::march::enter::Entrances;
 use crate::render::march::{Journey, Start};
 use crate::render::resolve::{self, Blending, Face, Stretch};
 use crate::render::skin::{self, NONE, SkinTile};
-use crate::render::strands::ribbon::{Share, Window};
-use crate::render::strands::{Fragment, Knot, Streak};
+use crate::render::strands::ribbon::Window;
+use crate::render::strands::{Fragment, Knot};
 
 /// A tile of the picture.
 #[derive(Clone, Copy)]
@@ -40,6 +39,12 @@ impl Place<'_> {
         (y - self.from[1]) * TILE + x - self.from[0]
     }
 
+    /// Column and row of the picture of a pixel of the tile.
+    #[inline(always)]
+    pub(super) fn pixel(&self, at: usize) -> [i32; 2] {
+        [(self.from[0] + at % TILE) as i32, (self.from[1] + at / TILE) as i32]
+    }
+
     fn pixels(self) -> impl Iterator<Item = (usize, usize, usize)> {
         let columns = self.from[0]..self.to[0];
         (self.from[1]..self.to[1]).flat_map(move |y| columns.clone().map(move |x| (self.at(x, y), x, y)))
@@ -50,7 +55,7 @@ impl Pass<'_> {
     /// Gathers the fragments of guard hair: nearest pieces first, so that most of those that hide behind them are never
     /// drawn.
     pub(super) fn gather(&self, place: &Place<'_>, band: &Band, scratch: &mut Scratch) {
-        let Scratch { guard, pieces, fragment_count, .. } = scratch;
+        let Scratch { guard, pieces, spare, fragment_count, .. } = scratch;
         guard.begin(self.settings.opaque, |at| [self.limit_m(place, at), self.clear_m(place, at)]);
         let Some((strands, _)) = &self.guard else { return };
         pieces.clear();
@@ -58,11 +63,11 @@ impl Pass<'_> {
         let nearest_m = |piece: u32| band.knots[piece as usize].z_m.min(band.knots[piece as usize + 1].z_m).max(0.0);
         let keyed = |&piece: &u32| u64::from(nearest_m(piece).to_bits()) << 32 | u64::from(piece);
         pieces.extend(band.bins.of(place.in_band).iter().map(keyed));
-        pieces.sort_unstable();
+        radix::sort(pieces, spare);
         let window = Window { from: place.from.map(|v| v as i32), to: place.to.map(|v| v as i32) };
         lanes::run(Brush { pass: self, strands, place, band, pieces, window, guard });
-        *fragment_count += guard.len() as u64;
-        guard.settle();
+        *fragment_count += guard.len();
+        guard.settle(spare);
     }
 
     /// Depth behind which a pixel's skin hides hair wherever in the pixel it stands, m; infinite where there is none.
@@ -94,20 +99,17 @@ impl Pass<'_> {
     }
 
     /// Puts what a tile's pixels hold into one order and colours the film.
-    pub(super) fn compose(&self, place: &Place<'_>, band: &Band, scratch: &Scratch, out: &mut FilmRows<'_>) {
+    pub(super) fn compose(&self, place: &Place<'_>, scratch: &Scratch, out: &mut FilmRows<'_>) {
         let Settings { layers, blending, opaque, .. } = *self.settings;
         for (at, x, y) in place.pixels() {
-            let skin_face = self.skin_face(x, y, place.skin.triangle[at]);
-            let face = |f: &Fragment| match &self.guard {
-                Some((strands, _)) => self.hair_face(strands, band, f.z_m(), scratch.guard.streak(f)),
-                None => Face::default(),
-            };
+            let skin_face = || self.skin_face(x, y, place.skin.triangle[at]);
+            let face = |f: &Fragment| self.hair_face(f, &scratch.guard);
             let (mut fragments, stretches) = (scratch.guard.of(at), &scratch.stretches[at]);
             if let Blending::Simplified { .. } = blending {
                 // Hair thins the undercoat before it, but only as far as that lets it be seen.
-                fragments = &fragments[..fragments.partition_point(|f| f.z_m() <= scratch.opaque_m[at])];
+                fragments = &fragments[..fragments.partition_point(|f| f.z_m <= scratch.opaque_m[at])];
             }
-            let pixel = resolve::composite(layers, fragments, stretches, blending, opaque, skin_face.as_ref(), face);
+            let pixel = resolve::composite(layers, fragments, stretches, blending, opaque, skin_face, face);
             let depth_scale = pixel_ray(&self.view, x, y).length();
             out.add(y - place.from[1], x, &pixel, depth_scale);
         }
@@ -184,22 +186,30 @@ impl Pass<'_> {
     /// they count where they lie before the skin of their own place. Seen from its bare side, skin hides what lies behind
     /// either.
     #[inline(always)]
-    pub(super) fn before_skin(&self, a: &Knot, b: &Knot, share: &Share, z_m: f32, skin: &SkinTile, at: usize) -> bool {
+    #[expect(clippy::too_many_arguments, reason = "a piece, where on it, and the pixel")]
+    pub(super) fn before_skin(
+        &self,
+        a: &Knot,
+        b: &Knot,
+        linear: f32,
+        pixel: [i32; 2],
+        z_m: f32,
+        skin: &SkinTile,
+        at: usize,
+    ) -> bool {
         let (triangle, before_middle) = (skin.triangle[at], z_m < skin.z_m[at]);
         // Planes are asked for only where they decide.
         if triangle == NONE || before_middle != self.bare[triangle as usize] {
             return before_middle;
         }
-        self.before_plane(a, b, share, z_m, triangle)
+        self.before_plane(a, b, linear, pixel, z_m, triangle)
     }
 
     /// Whether a hair lies before the plane of a triangle, at its own place within the pixel.
     #[inline(never)]
-    fn before_plane(&self, a: &Knot, b: &Knot, share: &Share, z_m: f32, triangle: u32) -> bool {
-        let at = |from: f32, to: f32, pixel: i32| {
-            (from + share.linear * (to - from)).clamp(pixel as f32, (pixel + 1) as f32)
-        };
-        let pixel = Vec2::new(at(a.x, b.x, share.pixel[0]), at(a.y, b.y, share.pixel[1]));
+    fn before_plane(&self, a: &Knot, b: &Knot, linear: f32, pixel: [i32; 2], z_m: f32, triangle: u32) -> bool {
+        let at = |from: f32, to: f32, pixel: i32| (from + linear * (to - from)).clamp(pixel as f32, (pixel + 1) as f32);
+        let pixel = Vec2::new(at(a.x, b.x, pixel[0]), at(a.y, b.y, pixel[1]));
         let ray = ((pixel - self.view.centre_px) / self.view.focal_px).extend(1.0);
         z_m < Flat::new(self.corners(triangle)).plane_depth(ray)
     }
@@ -215,18 +225,17 @@ impl Pass<'_> {
     }
 
     #[inline(always)]
-    fn hair_face(&self, strands: &Strands, band: &Band, z_m: f32, streak: &Streak) -> Face {
-        if self.settings.layers == Layers::Light {
+    fn hair_face(&self, fragment: &Fragment, guard: &Gathered) -> Face {
+        let streak = guard.streak(fragment);
+        let Some((strands, _)) = self.guard.as_ref().filter(|_| self.settings.layers != Layers::Light) else {
             return Face { radiance: streak.radiance, ..Face::default() };
-        }
-        let strand = band.strands[streak.strand as usize] as usize;
-        let points_m = strands.points_of_m(strand);
-        let piece = ((streak.s * (points_m.len() - 1) as f32) as usize).min(points_m.len() - 2);
+        };
+        let stroke = guard.stroke(streak);
         Face {
-            z_m,
+            z_m: fragment.z_m,
             radiance: streak.radiance,
-            albedo: strands.tint[strand] * strands.profile.ramp_at(streak.s),
-            tangent: (points_m[piece + 1] - points_m[piece]).normalize_or_zero(),
+            albedo: stroke.tint * strands.profile.ramp_at(streak.s),
+            tangent: stroke.tangent,
             normal: Vec3::ZERO,
         }
     }
@@ -237,6 +246,7 @@ pub(super) struct Scratch {
     guard: Gathered,
     /// Depth's bits and index of each piece in the tile.
     pieces: Vec<u64>,
+    spare: Vec<u64>,
     starts: Vec<Vec<Start>>,
     journeys: Vec<PixelJourney>,
     stretches: Vec<Vec<Stretch>>,
@@ -263,6 +273,7 @@ impl Default for Scratch {
         Self {
             guard: Gathered::default(),
             pieces: Vec::new(),
+            spare: Vec::new(),
             starts: vec![Vec::new(); SIZE],
             journeys: Vec::new(),
             stretches: vec![Vec::new(); SIZE],

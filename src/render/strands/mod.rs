@@ -50,19 +50,17 @@ pub struct Knot {
     pub half_px: f32,
 }
 
-/// A share of a pixel that a hair covers.
+/// A share of a pixel that a hair covers, among the pixel's others in their order of depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fragment {
-    /// Depth's bits, then the hair's id: positive floats are ordered as their bits.
-    order: u64,
-    /// Covered share of the pixel, in (0, 1].
-    pub coverage: f32,
-    /// The hair's own opacity there, in [0, 1].
-    pub opacity: f32,
-    /// What it shows: index of a [`Streak`], in the order of drawing.
+    /// Depth along the optical axis, m.
+    pub z_m: f32,
+    /// What it hides of the pixel, in [0, 1].
+    pub alpha: f32,
+    /// Transmittance of the pixel's fragments up to and with this one.
+    pub veil: f32,
+    /// What it shows: index of a [`Streak`].
     pub streak: u32,
-    /// Where it falls.
-    pub pixel: u32,
 }
 
 /// A row of a ribbon, or a column where it lies flat: what its fragments have in common.
@@ -70,40 +68,8 @@ pub struct Fragment {
 pub struct Streak {
     /// Radiance of the opaque hair, linear RGB.
     pub radiance: Vec3,
-    /// Number of the hair among those that are drawn.
-    pub strand: u32,
     /// Where along the hair, in [0, 1].
     pub s: f32,
-}
-
-impl Fragment {
-    /// Of hair `id` at depth `z_m` > 0 along the optical axis, on a pixel.
-    #[inline(always)]
-    pub fn new(z_m: f32, id: u32, [coverage, opacity]: [f32; 2], streak: u32, pixel: u32) -> Self {
-        Self { order: u64::from(z_m.to_bits()) << 32 | u64::from(id), coverage, opacity, streak, pixel }
-    }
-
-    /// What it hides of the pixel.
-    #[inline(always)]
-    pub fn alpha(&self) -> f32 {
-        self.coverage * self.opacity
-    }
-
-    /// Depth along the optical axis, m.
-    #[inline(always)]
-    pub fn z_m(&self) -> f32 {
-        f32::from_bits((self.order >> 32) as u32)
-    }
-
-    /// Source index of the hair.
-    #[inline(always)]
-    pub fn id(&self) -> u32 {
-        self.order as u32
-    }
-
-    /// Sorts by depth, then id, then in the order of drawing.
-    #[inline(always)]
-    pub fn order(&self) -> (u64, u32) {
-        (self.order, self.streak)
-    }
+    /// Number of the piece among those that were drawn.
+    pub stroke: u32,
 }

@@ -145,15 +145,18 @@ impl Narrow {
         let (from, to) = ([a.x, a.y], [b.x, b.y]);
         let (minor, major) = ([from[axes[0]], to[axes[0]]], [from[axes[1]], to[axes[1]]]);
         // At 45 degrees a row is √2 as wide as the ribbon, and drifts by 1.
-        if a.half_px.max(b.half_px) * (2.0 * std::f32::consts::SQRT_2) + 1.0 > (NARROW - 1) as f32 {
+        let reach = a.half_px.max(b.half_px) * std::f32::consts::SQRT_2 + 0.5;
+        if 2.0 * reach > (NARROW - 1) as f32 {
             return None;
         }
         let first = floor(major[0].min(major[1])).max(window.from[axes[1]]);
         let last = floor(-major[0].max(major[1])).saturating_neg().min(window.to[axes[1]]);
+        let within = [window.from[axes[0]], window.to[axes[0]]];
+        let [first, last] = beside(within, reach, minor, major, [first, last]);
         Some(Self {
             flat,
             rows: [first, last],
-            within: [window.from[axes[0]], window.to[axes[0]]],
+            within,
             minor,
             major,
             half: [a.half_px, b.half_px],
@@ -202,6 +205,23 @@ impl Narrow {
         }
     }
 }
+
+/// Rows among `rows` on which a ribbon that reaches as far as `reach` may lie between the minor sides `within`.
+#[inline(always)]
+fn beside(within: [i32; 2], reach: f32, minor: [f32; 2], major: [f32; 2], rows: [i32; 2]) -> [i32; 2] {
+    let per_minor = (major[1] - major[0]) / (minor[1] - minor[0]);
+    if !(per_minor.abs() < STEEPEST) {
+        return rows;
+    }
+    // With a row to spare for rounding.
+    let at = |side: f32| major[0] + (side - minor[0]) * per_minor;
+    let (a, b) = (at(within[0] as f32 - reach), at(within[1] as f32 + reach));
+    let [first, last] = [floor(a.min(b)) - 1, floor(a.max(b)) + 2];
+    [rows[0].max(first), rows[1].min(last)]
+}
+
+/// Rows per pixel across above which a ribbon is not looked at for where it passes the sides.
+const STEEPEST: f32 = 1e3;
 
 /// [`ramp`] in lanes.
 #[inline(always)]
