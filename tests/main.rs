@@ -14,6 +14,7 @@ mod cli;
 mod coat_file;
 mod coats;
 mod common;
+mod crossing;
 mod defocus;
 mod docs;
 mod field;

@@ -30,9 +30,7 @@ pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>)
     let (mut groomed, mut patches, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
     let mut times_ms = Vec::new();
     for &part in task.parts {
-        let skin = steps.run("groom", || {
-            skin::groom(task.asset, &task.asset.parts[part], task.preset, task.scale.metres_per_unit)
-        })?;
+        let skin = steps.run("groom", || skin::groom(task.asset, &task.asset.parts[part], task.preset, task.scale))?;
         let method = Parameterisation::Atlas { texels_per_tile: recipe.shells.texture_size, padding_texels: PADDING };
         let start = Instant::now();
         let charts = steps.run("patches", || parameterise(&skin.mesh, &skin.fields.direction, tile_m, method))?;

@@ -297,9 +297,8 @@ fn dress(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: &mut 
     }
     let (mut worn, mut warnings) = (Vec::new(), Vec::new());
     for &part in task.parts {
-        let groomed = steps.run("groom", || {
-            skin::groom(task.asset, &task.asset.parts[part], task.preset, task.scale.metres_per_unit)
-        })?;
+        let groomed =
+            steps.run("groom", || skin::groom(task.asset, &task.asset.parts[part], task.preset, task.scale))?;
         let (direction, edge_m) = (&groomed.fields.direction, tiles[0].edge_m);
         let start = Instant::now();
         let patches =

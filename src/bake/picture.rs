@@ -75,7 +75,7 @@ impl Grown {
         let preset = &scene.preset;
         let scale = units::scale(scene.units, preset, &asset, scene.input.starts_with("sample:"))?;
         let mut notes = asset.warnings.clone();
-        notes.extend(scale.note);
+        notes.extend(scale.note.clone());
         let pose = match &scene.pose {
             Some((animation, seconds)) => {
                 let index = asset.animation(animation).map_err(|e| e.with_field("--pose"))?;
@@ -85,7 +85,7 @@ impl Grown {
         };
         let mut all: Option<Groomed> = None;
         for (index, part) in asset.parts.iter().enumerate() {
-            let mut groomed = skin::groom(&asset, part, preset, scale.metres_per_unit)?;
+            let mut groomed = skin::groom(&asset, part, preset, &scale)?;
             if !chosen.contains(&index) {
                 groomed.fields.density.fill(0.0);
             }

@@ -48,7 +48,7 @@ pub(super) fn wear_all(
     let shares = shares(&own.mesh, &task.preset.regions)?;
     let mut fields = vec![own.fields.clone()];
     for preset in presets {
-        let groomed = steps.run("groom", || skin::groom(task.asset, at, preset, task.scale.metres_per_unit))?;
+        let groomed = steps.run("groom", || skin::groom(task.asset, at, preset, task.scale))?;
         fields.push(groomed.fields);
     }
     let axes = axes(&own.mesh, &own.fields.direction, patches);

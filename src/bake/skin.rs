@@ -1,6 +1,7 @@
 //! One part made ready to wear fur: its mesh in metres and the fields on it.
 
 use super::comb::comb;
+use super::units::Scale;
 use crate::asset::material::BaseColour;
 use crate::asset::{Asset, Part, Pose, image};
 use crate::coat::wear::offset_over_height;
@@ -8,6 +9,7 @@ use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::error::Result;
 use crate::fur::field::Singularity;
+use crate::fur::groom::fibre::Fibre;
 use crate::fur::groom::maps::Maps;
 use crate::fur::groom::{ColourSource, fields};
 use crate::math::{Vec3, Vec4};
@@ -34,7 +36,8 @@ impl Groomed {
 }
 
 /// Gathers everything that decides how hair lies on `part`.
-pub fn groom(asset: &Asset, part: &Part, preset: &Preset, metres_per_unit: f64) -> Result<Groomed> {
+pub fn groom(asset: &Asset, part: &Part, preset: &Preset, scale: &Scale) -> Result<Groomed> {
+    let metres_per_unit = scale.metres_per_unit;
     let mesh = part.mesh(metres_per_unit)?;
     let maps = decode(&preset.maps)?;
     let mut notes = Vec::new();
@@ -43,7 +46,11 @@ pub fn groom(asset: &Asset, part: &Part, preset: &Preset, metres_per_unit: f64) 
     }
     let comb = comb(asset, &mesh, &preset.groom, &maps, metres_per_unit, &mut notes)?;
     let tint = tint(asset, part, &mesh, preset)?;
-    let fields = fields::gather(&mesh, &preset.groom, &maps, comb.direction, tint);
+    let diagonal_m = scale.diagonal_m as f32;
+    let guard = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
+    let undercoat = Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m);
+    let height_m = if undercoat.height_m() > 0.0 { undercoat.height_m() } else { guard.height_m() };
+    let fields = fields::gather(&mesh, &preset.groom, &maps, comb.direction, tint, height_m);
     Ok(Groomed { fields, mesh, singularities: comb.singularities, notes })
 }
 

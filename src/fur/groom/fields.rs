@@ -2,6 +2,7 @@
 
 use super::Groom;
 use super::maps::{Maps, sample, sample_colour};
+use super::unfold::unfold;
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::math::{Vec2, Vec3};
@@ -11,9 +12,10 @@ const LEAST_RISE: f32 = 0.17;
 
 /// Gathers the fields.
 ///
-/// `comb` is a unit tangent per vertex, zero where the hair stands upright; `tint` the colour under each vertex. Maps are
-/// sampled at the mesh's first UV set and left out where it has none.
-pub fn gather(mesh: &Mesh, groom: &Groom, maps: &Maps, comb: Vec<Vec3>, tint: Vec<Vec3>) -> Fields {
+/// `comb` is a unit tangent per vertex, zero where the hair stands upright; `tint` the colour under each vertex; `height_m` that
+/// of the hair that is combed so that it does not cross, m. Maps are sampled at the mesh's first UV set and left
+/// out where it has none.
+pub fn gather(mesh: &Mesh, groom: &Groom, maps: &Maps, comb: Vec<Vec3>, tint: Vec<Vec3>, height_m: f32) -> Fields {
     let count = mesh.positions_m.len();
     let normals = mesh.smooth_normals();
     let at = |v: usize| mesh.uv_sets.first().map_or(Vec2::ZERO, |uv| uv[v]);
@@ -27,11 +29,14 @@ pub fn gather(mesh: &Mesh, groom: &Groom, maps: &Maps, comb: Vec<Vec3>, tint: Ve
         _ => 1.0,
     };
     let attribute = |v: usize| mesh.fur_length.as_ref().map_or(1.0, |length| length[v].max(0.0));
+    let mut length: Vec<f32> = (0..count).map(|v| attribute(v) * grey(&maps.length, v) * comb_length(v)).collect();
+    let mut lean: Vec<Vec3> = (0..count).map(|v| lean(groom, normals[v], comb[v])).collect();
+    unfold(mesh, &normals, height_m, &mut lean, &mut length);
     Fields {
-        length: (0..count).map(|v| attribute(v) * grey(&maps.length, v) * comb_length(v)).collect(),
+        length,
+        lean,
         density: (0..count).map(|v| grey(&maps.density, v)).collect(),
         clump: (0..count).map(|v| grey(&maps.clump, v)).collect(),
-        lean: (0..count).map(|v| lean(groom, normals[v], comb[v])).collect(),
         direction: comb,
         tint: match &maps.colour {
             Some(image) if has_uv => (0..count).map(|v| sample_colour(image, at(v))).collect(),
@@ -45,10 +50,15 @@ fn lean(groom: &Groom, normal: Vec3, comb: Vec3) -> Vec3 {
     let (sin, cos) = libm::sincosf(groom.lean_deg.to_radians());
     let combed = if comb == Vec3::ZERO { normal } else { normal * cos + comb * sin };
     let pulled = (combed + Vec3::NEG_Y * groom.gravity).normalize_or(normal);
-    let rise = pulled.dot(normal);
+    raised(pulled, normal)
+}
+
+/// A lean turned up to the least angle with the skin.
+pub(super) fn raised(lean: Vec3, normal: Vec3) -> Vec3 {
+    let rise = lean.dot(normal);
     if rise >= LEAST_RISE {
-        return pulled;
+        return lean;
     }
-    let flat = (pulled - normal * rise).normalize_or_zero();
+    let flat = (lean - normal * rise).normalize_or_zero();
     flat * (1.0 - LEAST_RISE * LEAST_RISE).sqrt() + normal * LEAST_RISE
 }

@@ -6,6 +6,7 @@ pub mod fibre;
 pub mod fields;
 pub mod hair;
 pub mod maps;
+pub mod unfold;
 
 use crate::math::Vec3;
 use schemars::JsonSchema;
