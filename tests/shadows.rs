@@ -1,11 +1,19 @@
 //! The key light's shadow: stored depths, hair in the mean, and what a pelt hides from behind.
 
 use crate::pelts::{self, Grown};
+use furrier::bake::picture::{self as depicted, Only, Scene, studio};
+use furrier::bake::units::Units;
+use furrier::math::DVec3;
 use furrier::math::Vec3;
 use furrier::math::lanes::{self, F32s, Isa, Vec3s, Work};
+use furrier::preset::Preset;
 use furrier::render::mean::MeanShadow;
-use furrier::render::pelt::Layer;
+use furrier::render::pelt::{Layer, Pelt};
 use furrier::render::picture::{Settings, draw};
+use furrier::render::reference::bvh::Ray;
+use furrier::render::reference::medium::{Counted, Medium};
+use furrier::render::reference::shell::Place;
+use furrier::render::reference::skin::Skin;
 use furrier::render::shell::lattice::{self, Lattice, Lattices};
 
 /// What a lattice holds at a place, in the first lane.
@@ -104,4 +112,58 @@ fn no_hair_shows_through_the_bare_side() {
     assert!(shown.len() > 100, "{} pixels of bare skin", shown.len());
     let worst = shown.iter().copied().fold(0.0, f32::max);
     assert!(worst < 0.02, "{worst}");
+}
+
+/// Light that the key light's shadow lets through over every seventh triangle of a hat, at three heights: what `shadow` has
+/// against the reference's medium, as the mean size of the difference.
+fn strays_on_a_hat(shadow: impl Fn(&MeanShadow<'_>, &Pelt<'_>, u32, f32, f32) -> f32) -> f64 {
+    let mut preset = Preset::load("mink").unwrap();
+    preset.undercoat.shape.clump.strength = 0.0;
+    let scene = Scene {
+        input: "sample:hat".to_owned(),
+        preset,
+        materials: Vec::new(),
+        units: Units::Auto,
+        seed: 0,
+        only: Only::Hybrid,
+        pose: None,
+    };
+    let grown = depicted::Grown::new(&scene).unwrap();
+    let to_light = studio(&grown.camera(35.0, 20.0, 1.0, [1, 1])).key.to_light;
+    let pelt = grown.pelt();
+    let normals = pelt.skin.smooth_normals();
+    let medium = Medium::new(&pelt, &normals, None).unwrap();
+    let skin = Skin::new(pelt.skin);
+    let mean = MeanShadow::new(&pelt, to_light).unwrap();
+    let (mut strays, mut count) = (0.0, 0.0);
+    for triangle in (0..pelt.skin.triangles.len() as u32).step_by(7) {
+        let cosine = normals[pelt.skin.triangles[triangle as usize][0] as usize].dot(to_light);
+        if cosine < 0.05 {
+            continue;
+        }
+        for share in [0.25_f32, 0.5, 0.75] {
+            let t = share / mean.share(medium.shell.undercoat.height_m, 1.0);
+            let place = Place { triangle, b: DVec3::X, t: f64::from(t) };
+            let ray = Ray::new(medium.slabs.position_m(&place), to_light.as_dvec3());
+            let to_m = skin.meet(&ray, 1e-7).map_or(f64::INFINITY, |(at_m, _)| at_m);
+            let expected = medium.depth_along(&ray, 1e-9, to_m, Counted::Both, 15.0);
+            let found = f64::from(shadow(&mean, &pelt, triangle, share, cosine));
+            strays += ((-0.5 * found).exp() - (-0.5 * expected).exp()).abs();
+            count += 1.0;
+        }
+    }
+    strays / count
+}
+
+#[test]
+fn mean_shadow_is_the_references_where_a_crown_shades_its_brim() {
+    let strays = strays_on_a_hat(|mean, _, triangle, share, _| mean.at(triangle, Vec3::X, share).iter().sum());
+    assert!(strays < 0.015, "{strays}");
+    // A flat layer's shadow knows of no crown.
+    let flat = strays_on_a_hat(|mean, pelt, _, share, cosine| {
+        let layers = [pelt.guard.unwrap().1, pelt.undercoat.unwrap()].map(|fibre| Layer::new(fibre, 1.0, 1.0));
+        let height_m = share / mean.share(1.0, 1.0);
+        layers.iter().map(|layer| layer.above(height_m)).sum::<f32>() / cosine
+    });
+    assert!(flat > 0.05, "{flat}");
 }

@@ -40,7 +40,7 @@ fn before(a: Entry, b: Entry) -> bool {
 fn entry(index: u32, begin: u32, count: u32) -> Entry {
     if index < count {
         let start = starts[begin + index];
-        return Entry(bitcast<f32>(start.x), faces[start.y] >> 3u, index);
+        return Entry(bitcast<f32>(start.x), faces[start.y] >> 4u, index);
     }
     return Entry(0.0, inside[index - count].triangle, index);
 }

@@ -5,17 +5,19 @@
 #import furrier::prism::{Place, jacobian}
 #import furrier::camera::{Flat, flat_of, camera_from_world}
 
-// Triangle · 8 + kind: 0 for the top, 1 + 2·corner for one half of the wall over the edge opposite to that corner, the next
-// for its other half.
+// Triangle · 16 + kind · 2 + whether the prism is inside out there. Kind: 0 for the top, 1 + 2·corner for one half of the wall
+// over the edge opposite to that corner, the next for its other half.
 @group(3) @binding(0) var<storage, read> faces: array<u32>;
 
 fn on_corner(corner: u32, t: f32) -> Place {
     return Place(vec2(f32(corner == 1u), f32(corner == 2u)), t);
 }
 
-// Corner `which` of a face, in its prism.
-fn face_place(face: u32, which: u32) -> Place {
-    let kind = faces[face] & 7u;
+// Corner `number` of a face, in its prism.
+fn face_place(face: u32, number: u32) -> Place {
+    let turned = (faces[face] & 1u) == 1u;
+    let which = select(number, (3u - number) % 3u, turned);
+    let kind = (faces[face] >> 1u) & 7u;
     if kind == 0u {
         return on_corner(which, 1.0);
     }
@@ -33,7 +35,7 @@ fn face_place(face: u32, which: u32) -> Place {
 }
 
 fn face_corner(face: u32, which: u32) -> vec3<f32> {
-    return jacobian(prism_of(faces[face] >> 3u), face_place(face, which)).at_m;
+    return jacobian(prism_of(faces[face] >> 4u), face_place(face, which)).at_m;
 }
 
 fn face_shape(face: u32) -> Flat {

@@ -25,6 +25,8 @@ struct Walk {
     per_depth_m: f32,
     // How far the last change of prism took the march along, m.
     push_m: f32,
+    // Sign of the determinant at the last step, which changes at folds; 0 before the first.
+    sign: f32,
     alive: bool,
     prism: Prism,
 }
@@ -46,7 +48,7 @@ struct Stepping {
 }
 
 fn walk_from(at_m: f32, triangle: u32, place: Place) -> Walk {
-    return Walk(at_m, triangle, place, 1e30, 0.0, true, prism_of(triangle));
+    return Walk(at_m, triangle, place, 1e30, 0.0, 0.0, true, prism_of(triangle));
 }
 
 // Density over its mean in the sub-element that holds a place. Prisms that are not stored are asked directly: the same
@@ -130,10 +132,12 @@ fn advance(walk: ptr<function, Walk>, origin_m: vec3<f32>, direction: vec3<f32>,
     let rates = rates_along(j, direction);
     var taken = Step((*walk).at_m, 0.0, (*walk).triangle, (*walk).place, vec3(0.0), 0.0);
     let largest = max(max(abs(rates.x), abs(rates.y)), abs(rates.z));
-    if !(largest > 0.0 && largest < 1e37) {
+    let sign = select(1.0, -1.0, j.determinant < 0.0);
+    if !(largest > 0.0 && largest < 1e37) || (*walk).sign * sign < 0.0 {
         (*walk).alive = false;
         return taken;
     }
+    (*walk).sign = sign;
     // Put right what the last step's straight line left over.
     (*walk).place = moved((*walk).place, rates_along(j, origin_m + direction * (*walk).at_m - j.at_m), 1.0);
     let thickness_m = length(j.up_m) / f32(scene.layers);

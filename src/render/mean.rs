@@ -1,6 +1,8 @@
 //! The key light's shadow in hair as dense as it is in the mean: optical depth from every vertex of the skin, at heights up
-//! to the tips, through the shell to its top or an open border (`docs/steps/shade.md`).
+//! to the tips, through the shell to its top or an open border, and through what other limbs' hair lies beyond
+//! (`docs/steps/shade.md`).
 
+mod faces;
 mod walk;
 
 use super::pelt::Pelt;
@@ -10,9 +12,10 @@ use crate::fur::groom::fibre::{Fibre, LENGTH_SPREAD};
 use crate::fur::undercoat::Undercoat;
 use crate::math::Vec3;
 use crate::math::lanes::{self, MOST};
+use faces::{Faces, Meeting};
 use rayon::prelude::*;
 use std::sync::OnceLock;
-use walk::{Starts, Walk};
+use walk::{Ray, Rays, Walk};
 
 /// Intervals of height up to the tips.
 const LAYERS: usize = 24;
@@ -20,7 +23,23 @@ const LAYERS: usize = 24;
 /// Optical depth beyond which no light is left.
 const DARK: f32 = 15.0;
 
-/// Optical depths of undercoat and guard hair towards the key light at heights from the skin to the tips.
+/// How far from its origin a ray may meet the first face, and how far apart the ends of hair are that count as one, in
+/// heights of the tips.
+const NEAR: f32 = 1e-4;
+const SAME: f32 = 0.02;
+
+/// A ray to the light from a place above a vertex.
+struct Column {
+    /// Through the hair around the vertex.
+    own: Option<Ray>,
+    /// Height of the tips, m.
+    tips_m: f32,
+    /// Where the ray meets tips, borders and skin.
+    meetings: Vec<Meeting>,
+}
+
+/// Optical depths towards the key light at heights from the skin to the tips: of the undercoat that a march from prism to
+/// prism meets, and of all other hair.
 pub type Depths = [[f32; 2]; LAYERS + 1];
 
 /// A kind of hair in the mean.
@@ -69,6 +88,7 @@ pub struct MeanShadow<'a> {
     tips: f32,
     kinds: [Option<Kind>; 2],
     to_light: Vec3,
+    faces: Faces,
     /// Twice the area of each triangle in the rest pose, m².
     twice_area_m2: Vec<f32>,
     /// Triangles around each vertex's position class.
@@ -92,8 +112,10 @@ impl<'a> MeanShadow<'a> {
                 around[pelt.skin.position_class[v as usize] as usize].push(t as u32);
             }
         }
+        let shell = Shell::new(pelt.skin, pelt.fields, of_shell);
         Some(Self {
-            shell: Shell::new(pelt.skin, pelt.fields, of_shell),
+            faces: Faces::new(&shell, tips, to_light),
+            shell,
             tips,
             kinds: [pelt.undercoat, guard].map(|fibre| fibre.map(|fibre| Kind::new(fibre, shell_m, tips))),
             to_light,
@@ -105,11 +127,10 @@ impl<'a> MeanShadow<'a> {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.shell.bytes() + self.cells.len() * size_of::<OnceLock<Depths>>()
+        self.shell.bytes() + self.faces.bytes() + self.cells.len() * size_of::<OnceLock<Depths>>()
     }
 
-    /// Optical depths of undercoat and guard hair in the column over a point of the skin, at a height given as a share of the
-    /// tips'.
+    /// Optical depths, as in [`Depths`], in the column over a point of the skin, at a height given as a share of the tips'.
     pub fn at(&self, triangle: u32, b: Vec3, share: f32) -> [f32; 2] {
         let at = share.clamp(0.0, 1.0) * LAYERS as f32;
         let low = (at as usize).min(LAYERS - 1);
@@ -133,12 +154,11 @@ impl<'a> MeanShadow<'a> {
 
     /// Optical depth of both kinds at a place of undercoat's shell.
     pub fn depth(&self, triangle: u32, b: Vec3, t: f32) -> f32 {
-        let [undercoat, guard] = self.at(triangle, b, t / self.tips);
-        undercoat + guard
+        self.at(triangle, b, t / self.tips).iter().sum()
     }
 
-    /// Guard hair's part of the depth at a place of undercoat's shell.
-    pub fn guard_depth(&self, triangle: u32, b: Vec3, t: f32) -> f32 {
+    /// Depth of all but the undercoat that a march meets, at a place of undercoat's shell.
+    pub fn other_depth(&self, triangle: u32, b: Vec3, t: f32) -> f32 {
         self.at(triangle, b, t / self.tips)[1]
     }
 
@@ -151,32 +171,65 @@ impl<'a> MeanShadow<'a> {
     fn cell(&self, class: u32) -> &Depths {
         self.cells[class as usize].get_or_init(|| {
             let mut depths = Depths::default();
-            let mut above = [0.0; 2];
-            let heights: [f32; LAYERS + 1] = std::array::from_fn(|i| self.tips * i as f32 / LAYERS as f32);
-            for (depths, heights) in depths.rchunks_mut(MOST).zip(heights.rchunks(MOST)) {
+            let mut others = Vec::new();
+            let (mut own, mut end) = ([0.0; 2], LAYERS + 1);
+            while end > 0 {
                 // Below where no light is left there is none.
-                if above[0] + above[1] >= DARK {
-                    depths.fill(above);
-                    continue;
+                if own[0] + own[1] >= DARK {
+                    depths[..end].fill(own);
+                    break;
                 }
-                let mut starts = Starts::default();
-                for (start, &t) in starts.iter_mut().zip(heights) {
-                    *start = self.start(class, t);
-                }
-                let found = lanes::run(Walk { mean: self, starts: &starts });
-                for (depth, found) in depths.iter_mut().zip(found).rev() {
-                    if above[0] + above[1] < DARK {
-                        above = found;
+                let begin = end.saturating_sub(MOST);
+                let columns: Vec<Column> = (begin..end).map(|i| self.column(class, i)).collect();
+                let mut rays = Rays::default();
+                rays.iter_mut().zip(&columns).for_each(|(ray, column)| *ray = column.own);
+                let found = lanes::run(Walk { mean: self, rays: &rays });
+                for ((i, column), found) in (begin..end).zip(columns).zip(found).rev() {
+                    if own[0] + own[1] < DARK {
+                        own = found.depths;
                     }
-                    *depth = above;
+                    depths[i] = own;
+                    // Where its own hair ends the ray has been.
+                    let other = |meeting: &Meeting| (meeting.at_m - found.end_m).abs() > SAME * column.tips_m;
+                    others.extend(column.meetings.into_iter().filter(other).map(|meeting| (i, meeting)));
                 }
+                end = begin;
             }
+            self.add_others(&others, &mut depths);
             depths
         })
     }
 
+    /// The ray to the light from height number `i` above a vertex.
+    fn column(&self, class: u32, i: usize) -> Column {
+        let t = self.tips * i as f32 / LAYERS as f32;
+        let (foot_m, offset_m) = (self.shell.skin.positions_m[class as usize], self.shell.offsets_m[class as usize]);
+        let tips_m = self.tips * offset_m.length();
+        let mut meetings = Vec::new();
+        self.faces.meetings(&self.shell, foot_m + offset_m * t, NEAR * tips_m, &mut meetings);
+        let skin = meetings.iter().find(|meeting| meeting.place.t <= 0.0);
+        let own = self.start(class, t, skin.map_or(f32::INFINITY, |skin| skin.at_m));
+        Column { own, tips_m, meetings }
+    }
+
+    /// Adds the hair that rays from some heights have passed where they leave it, followed back from there.
+    fn add_others(&self, others: &[(usize, Meeting)], depths: &mut Depths) {
+        for others in others.chunks(MOST) {
+            let mut rays = Rays::default();
+            for (ray, (_, meeting)) in rays.iter_mut().zip(others) {
+                let &Meeting { at_m, triangle, place } = meeting;
+                let origin_m = self.shell.prism(triangle).jacobian(&place).at_m;
+                *ray = Some(Ray { triangle, place, origin_m, to_light: false, far_m: at_m });
+            }
+            let found = lanes::run(Walk { mean: self, rays: &rays });
+            for ((i, _), found) in others.iter().zip(found) {
+                depths[*i][1] += found.depths.iter().sum::<f32>();
+            }
+        }
+    }
+
     /// Where a ray begins above a vertex: in the prism around it into which the light's direction leads.
-    fn start(&self, class: u32, t: f32) -> Option<(u32, Place, Vec3)> {
+    fn start(&self, class: u32, t: f32, far_m: f32) -> Option<Ray> {
         let mut best: Option<([f32; 4], u32, Place, Vec3)> = None;
         for &triangle in &self.around[class as usize] {
             let corners = self.shell.skin.triangles[triangle as usize];
@@ -196,8 +249,9 @@ impl<'a> MeanShadow<'a> {
             }
         }
         // Where no prism lies that way, the light comes over an open border.
-        let ([least, ..], triangle, place, at_m) = best?;
-        (least > -1e-3 / self.shell.undercoat.height_m).then_some((triangle, place, at_m))
+        let ([least, ..], triangle, place, origin_m) = best?;
+        let leads = least > -1e-3 / self.shell.undercoat.height_m;
+        leads.then_some(Ray { triangle, place, origin_m, to_light: true, far_m })
     }
 
     /// The prism beyond the side opposite to a corner, and its own corner opposite to that side.

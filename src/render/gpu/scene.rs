@@ -11,7 +11,7 @@ use crate::render::march::volume::{TABLES, Volume};
 use crate::render::mean::MeanShadow;
 use crate::render::pelt::{Lighting, Pelt};
 use crate::render::picture::Settings;
-use crate::render::shell::lattice;
+use crate::render::shell::{lattice, outer};
 use crate::render::strands::LOOKS;
 use crate::render::table::Table;
 use crate::render::view::View;
@@ -218,15 +218,11 @@ fn triangle(pelt: &Pelt<'_>, volume: Option<&Volume<'_>>, t: u32) -> TriangleIte
     }
 }
 
-/// Tops of all prisms, and walls at open borders, as `shared/faces.wgsl` numbers them.
+/// The shell's outer faces, as `shared/faces.wgsl` numbers them.
 fn faces(volume: &Volume<'_>) -> Vec<u32> {
     let shell = volume.shell();
-    let of_triangle = |t: u32| {
-        let borders = (0..3).filter(move |&corner| shell.neighbours.beyond(t, corner).is_none());
-        let walls = borders.flat_map(|corner| [1 + 2 * corner as u32, 2 + 2 * corner as u32]);
-        std::iter::once(0).chain(walls).map(move |kind| t << 3 | kind)
-    };
-    (0..shell.skin.triangles.len() as u32).flat_map(of_triangle).collect()
+    let numbers = |t: u32| outer::faces(shell, t, 1.0).map(move |f| t << 4 | f.kind << 1 | u32::from(f.turned));
+    (0..shell.skin.triangles.len() as u32).flat_map(numbers).collect()
 }
 
 /// Whether a ray of the view may pass the prism over a triangle: not where all its corners lie outside of one side of the

@@ -6,6 +6,7 @@ use crate::math::Vec3;
 use crate::render::bins::{Bins, Grid};
 use crate::render::flat::{self, Flat};
 use crate::render::shell::Shell;
+use crate::render::shell::outer;
 use crate::render::shell::prism::Place;
 use crate::render::view::View;
 use rayon::prelude::*;
@@ -13,8 +14,7 @@ use rayon::prelude::*;
 /// An outer face of the shell, as seen by a view.
 #[derive(Clone, Copy, Debug)]
 struct Face {
-    triangle: u32,
-    corners: [Place; 3],
+    outer: outer::Face,
     camera_m: [Vec3; 3],
 }
 
@@ -27,9 +27,6 @@ pub struct Entrances {
     around_eye: Vec<(u32, Place)>,
 }
 
-const TOP: [Place; 3] =
-    [Place { b: [0.0, 0.0], t: 1.0 }, Place { b: [1.0, 0.0], t: 1.0 }, Place { b: [0.0, 1.0], t: 1.0 }];
-
 impl Entrances {
     /// Of the shell of `volume` for a view.
     pub fn new(volume: &Volume<'_>, view: &View, grid: &Grid) -> Self {
@@ -39,17 +36,12 @@ impl Entrances {
             .into_par_iter()
             .flat_map_iter(|triangle| {
                 let prism = shell.prism(triangle);
-                let camera = |place: Place| view.camera_from_world(prism.jacobian(&place).at_m);
-                let face = move |corners: [Place; 3]| Face { triangle, corners, camera_m: corners.map(camera) };
-                let borders = (0..3).filter(move |&c| shell.neighbours.beyond(triangle, c).is_none());
-                let walls = borders.flat_map(move |corner| {
-                    let foot = |i: usize| Place { t: 0.0, ..TOP[(corner + i) % 3] };
-                    let top = |i: usize| TOP[(corner + i) % 3];
-                    [face([foot(1), foot(2), top(2)]), face([foot(1), top(2), top(1)])]
-                });
+                let camera = move |place: Place| view.camera_from_world(prism.jacobian(&place).at_m);
                 let facing =
                     |f: &Face| Flat::new(f.camera_m).faces_eye() || f.camera_m.iter().any(|p| p.z <= view.near_m);
-                std::iter::once(face(TOP)).chain(walls).filter(facing).collect::<Vec<_>>()
+                outer::faces(shell, triangle, 1.0)
+                    .map(move |outer| Face { outer, camera_m: outer.corners.map(camera) })
+                    .filter(facing)
             })
             .collect();
         let bins = Bins::new(grid, faces.len(), |i| flat::reach(view, &faces[i].camera_m));
@@ -69,7 +61,7 @@ impl Entrances {
 
     /// The start of a march where a ray meets face `face` at `barycentric`, `at_m` from the eye.
     pub fn start(&self, face: usize, barycentric: Vec3, at_m: f32) -> Start {
-        let Face { triangle, corners, .. } = self.faces[face];
+        let outer::Face { triangle, corners, .. } = self.faces[face].outer;
         let mean = |value: fn(&Place) -> f32| {
             value(&corners[0]) * barycentric.x + value(&corners[1]) * barycentric.y + value(&corners[2]) * barycentric.z
         };

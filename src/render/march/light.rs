@@ -82,7 +82,7 @@ impl Shadows {
         let mut depths = volume.depths_along(&journeys, &TOWARDS_LIGHT, enough);
         if let Some(mean) = mean {
             for (depth, &(b, t)) in depths.iter_mut().zip(&places) {
-                *depth += mean.guard_depth(triangle, b, t);
+                *depth += mean.other_depth(triangle, b, t);
             }
         }
         Lattice::new(d, &depths)

@@ -97,7 +97,8 @@ const ON_SIDE: f32 = 1e-4;
 /// Follows all rays of `traveller`.
 ///
 /// Every step lies in one prism. Coordinates are carried along by their gradients and put right by one Newton step; a step
-/// ends on the side it would pass, and the march goes on in the neighbour there.
+/// ends on the side it would pass, and the march goes on in the neighbour there. Where prisms turn inside out, hair crosses: two
+/// sheets of it end there together, and each is entered by a march of its own.
 #[inline(always)]
 pub fn march<I: Isa, T: Traveller<I>>(volume: &Volume<'_>, stepping: &Stepping, traveller: &mut T) {
     let mut flight = Flight {
@@ -108,6 +109,7 @@ pub fn march<I: Isa, T: Traveller<I>>(volume: &Volume<'_>, stepping: &Stepping, 
         at_m: Row::default(),
         b: [Row::default(); 2],
         t: Row::default(),
+        sign: Row::default(),
         per_depth_m: Row::default(),
         push_m: Row::default(),
         steps: [0; MOST],
@@ -142,6 +144,8 @@ struct Flight<'v> {
     at_m: Row,
     b: [Row; 2],
     t: Row,
+    /// Sign of the determinant at the last step, which changes at folds; 0 before the first.
+    sign: Row,
     /// Length per optical depth, by the last step's density, m.
     per_depth_m: Row,
     /// How far the last change of prism took the march along, m.
@@ -181,6 +185,7 @@ fn board<'v, I: Isa, T: Traveller<I>>(
     flight.direction.set(lane, journey.direction);
     flight.far_m.0[lane] = journey.far_m;
     flight.at_m.0[lane] = journey.start.at_m;
+    flight.sign.0[lane] = 0.0;
     flight.per_depth_m.0[lane] = f32::INFINITY;
     flight.push_m.0[lane] = 0.0;
     flight.steps[lane] = 0;
@@ -207,7 +212,10 @@ fn advance<'v, I: Isa, T: Traveller<I>>(
     let places = places.moved(j.rates(left_over), F32s::splat(1.0));
     let rates = j.rates(direction);
     let fastest = rates.x.abs() + rates.y.abs() + rates.z.abs();
-    let moving = on & fastest.gt(zero) & fastest.lt(F32s::splat(f32::INFINITY));
+    let sign = j.determinant.lt(zero).select(F32s::splat(-1.0), F32s::splat(1.0));
+    let folded = (F32s::of(&flight.sign) * sign).lt(zero);
+    flight.sign = sign.row();
+    let moving = on & fastest.gt(zero) & fastest.lt(F32s::splat(f32::INFINITY)) & !folded;
 
     let layer_m = j.up_m.length() * (1.0 / volume.layers() as f32);
     let least_m = layer_m * 1e-3;

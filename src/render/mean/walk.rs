@@ -13,28 +13,53 @@ const STEP: f32 = 1.0 / 16.0;
 /// No march takes more steps.
 const MOST_STEPS: usize = 512;
 
-/// Where rays begin: prism, place and position, m; none where no hair is on the way.
-pub(super) type Starts = [Option<(u32, Place, Vec3)>; MOST];
+/// A ray from inside the shell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ray {
+    pub(super) triangle: u32,
+    /// Where in the prism over the triangle it begins.
+    pub(super) place: Place,
+    /// The same, m.
+    pub(super) origin_m: Vec3,
+    /// Whether it goes to the light or away from it.
+    pub(super) to_light: bool,
+    /// Where it ends at the latest, m.
+    pub(super) far_m: f32,
+}
 
-/// Follows rays to the tips or an open border; gives the optical depths of undercoat and guard hair.
+/// What a ray has met.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Found {
+    /// Optical depths of undercoat and guard hair.
+    pub(super) depths: [f32; 2],
+    /// How far it went, m.
+    pub(super) end_m: f32,
+}
+
+/// Rays that are followed together; none where no hair is on the way.
+pub(super) type Rays = [Option<Ray>; MOST];
+
+/// Follows rays to the tips, the skin, an open border or a fold, where prisms turn inside out.
 pub(super) struct Walk<'m, 'a> {
     pub(super) mean: &'m MeanShadow<'a>,
-    pub(super) starts: &'m Starts,
+    pub(super) rays: &'m Rays,
 }
 
 impl lanes::Work for Walk<'_, '_> {
-    type Output = [[f32; 2]; MOST];
+    type Output = [Found; MOST];
 
     #[inline(always)]
     fn run<I: Isa>(self) -> Self::Output {
-        let mut depths = [[0.0; 2]; MOST];
-        for (depths, starts) in depths.chunks_mut(I::LANES).zip(self.starts.chunks(I::LANES)) {
+        let mut found = [Found::default(); MOST];
+        for (found, rays) in found.chunks_mut(I::LANES).zip(self.rays.chunks(I::LANES)) {
             let mut walkers = Walkers::default();
-            for (lane, start) in starts.iter().enumerate() {
-                if let Some((triangle, place, origin_m)) = *start {
+            for (lane, ray) in rays.iter().enumerate() {
+                if let Some(ray) = ray {
                     walkers.on |= 1 << lane;
-                    walkers.origin_m.set(lane, origin_m);
-                    walkers.enter(self.mean, lane, triangle, place);
+                    walkers.origin_m.set(lane, ray.origin_m);
+                    walkers.along.0[lane] = if ray.to_light { 1.0 } else { -1.0 };
+                    walkers.far_m.0[lane] = ray.far_m;
+                    walkers.enter(self.mean, lane, ray.triangle, ray.place);
                 }
             }
             for _ in 0..MOST_STEPS {
@@ -43,11 +68,12 @@ impl lanes::Work for Walk<'_, '_> {
                 }
                 self.step::<I>(&mut walkers);
             }
-            for (lane, depths) in depths.iter_mut().enumerate() {
-                *depths = [walkers.sum[0].0[lane], walkers.sum[1].0[lane]];
+            for (lane, found) in found.iter_mut().enumerate() {
+                let depths = [walkers.sum[0].0[lane], walkers.sum[1].0[lane]];
+                *found = Found { depths, end_m: walkers.at_m.0[lane] };
             }
         }
-        depths
+        found
     }
 }
 
@@ -57,7 +83,12 @@ struct Walkers {
     /// A bit per lane.
     on: u32,
     origin_m: Vec3Row,
+    /// 1 towards the light, −1 away from it.
+    along: Row,
+    far_m: Row,
     at_m: Row,
+    /// Sign of the determinant at the last place, which changes at folds.
+    sign: Row,
     b: [Row; 2],
     t: Row,
     sum: [Row; 2],
@@ -97,7 +128,7 @@ impl Walk<'_, '_> {
     fn step<I: Isa>(&self, walkers: &mut Walkers) {
         let mean = self.mean;
         let zero = F32s::<I>::splat(0.0);
-        let direction = Vec3s::splat(mean.to_light);
+        let direction = Vec3s::splat(mean.to_light) * F32s::of(&walkers.along);
         let at_m = F32s::of(&walkers.at_m);
         let places = Places { b: [F32s::of(&walkers.b[0]), F32s::of(&walkers.b[1])], t: F32s::of(&walkers.t) };
         let j = walkers.prisms.jacobians(&places);
@@ -106,11 +137,20 @@ impl Walk<'_, '_> {
         let fastest = rates.x.abs() + rates.y.abs() + rates.z.abs();
         let sum = [F32s::of(&walkers.sum[0]), F32s::of(&walkers.sum[1])];
         let light = !(sum[0] + sum[1]).gt(F32s::splat(DARK));
-        let moving = Mask::from_bits(walkers.on) & fastest.gt(zero) & fastest.lt(F32s::splat(f32::INFINITY)) & light;
+        let left_m = F32s::of(&walkers.far_m) - at_m;
+        let sign = j.determinant.lt(zero).select(F32s::splat(-1.0), F32s::splat(1.0));
+        let folded = (F32s::of(&walkers.sign) * sign).lt(zero);
+        let moving = Mask::from_bits(walkers.on)
+            & fastest.gt(zero)
+            & fastest.lt(F32s::splat(f32::INFINITY))
+            & left_m.gt(zero)
+            & light
+            & !folded;
+        walkers.sign = sign.row();
         let up_m = j.up_m.length();
         let tips_m = up_m * mean.tips;
         let (side, after_m) = next_side(&places, rates, mean.tips);
-        let length_m = after_m.max(zero).min(tips_m * STEP);
+        let length_m = after_m.max(zero).min(tips_m * STEP).min(left_m);
         let middle = places.moved(rates, length_m * 0.5);
         let sine = (j.up_m * (F32s::splat(1.0) / up_m)).cross(direction).length();
         let standing =

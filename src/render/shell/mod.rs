@@ -3,6 +3,7 @@
 pub mod block;
 pub mod lattice;
 pub mod neighbours;
+pub mod outer;
 pub mod prism;
 pub mod subelement;
 
