@@ -1,9 +1,10 @@
 // Light on guard hair, one thread per strand, as src/render/strands/shade.rs.
-#import furrier::scene::{scene, Strand, strands, lights, point_of, normal_at, lean_at, density_at, length_at, unit_or}
+#import furrier::scene::{scene, triangles, Strand, strands, lights, point_of, normal_at, lean_at, density_at, length_at, unit_or, NOTHING}
 #import furrier::camera::view
 #import furrier::guard::{LOOKS, guard_ramp, root_of}
 #import furrier::fur_light::{angles_of, cos_of, guard_lobes, shadow_power, slant_depth, sky_depth, terminator, above_both}
 #import furrier::mean_shadow::{mean_depths, tips_m}
+#import furrier::undercoat_look::key_depth
 
 // Logarithms of radiance, LOOKS of each strand, three numbers each.
 @group(3) @binding(0) var<storage, read_write> looks: array<f32>;
@@ -16,6 +17,18 @@ fn step_at(first: u32, i: u32) -> vec3<f32> {
     let last = scene.points_per_strand - 1u;
     let step = point_of(first + min(i + 1u, last)) - point_of(first + max(i, 1u) - 1u);
     return step * select(1.0, 2.0, i == 0u || i >= last);
+}
+
+// Optical depth towards the key light: a hair is shadowed as the column over its own root is at its height, in the mean, but
+// beside an open border, where clumps are seen from their sides, with its clumps.
+fn depth_of(triangle: u32, b: vec3<f32>, height_m: f32, length: f32) -> f32 {
+    let t = height_m / max(scene.undercoat_kind.top_m * length, 1e-30);
+    let place = triangles[triangle];
+    if any(place.beyond == vec3(NOTHING)) && place.shadow_at != NOTHING && t <= 1.0 {
+        return key_depth(triangle, b, max(t, 0.0));
+    }
+    let depths = mean_depths(triangle, b, height_m / max(tips_m() * length, 1e-30));
+    return depths.x + depths.y;
 }
 
 // Logarithm of what a strand sends to the eye at its look `i`.
@@ -50,9 +63,7 @@ fn log_look(strand: Strand, first: u32, i: u32) -> vec3<f32> {
         let scattered = vec3(s.x) + albedo * s.y + albedo * albedo * s.z;
         var depth = 0.0;
         if k == 0u {
-            // Hair is shadowed as the column over its own root is at its height.
-            let depths = mean_depths(strand.triangle, b, height_m / max(tips_m() * length, 1e-30));
-            depth = depths.x + depths.y;
+            depth = depth_of(strand.triangle, b, height_m, length);
         } else {
             depth = slant_depth(above, light.to_light, normal, lean);
         }

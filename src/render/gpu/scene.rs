@@ -108,9 +108,10 @@ impl GpuScene {
             |t| 1 << (2 * splits(&|v, t| v.subdivisions(t), t)),
             |t, at| triangles[t as usize].density_at = at,
         );
-        // Only what is seen is asked for its shadow.
+        // Only what is seen is asked for its shadow, and what hair beside open borders grows on.
+        let at_border = |&&t: &&u32| volume.is_some_and(|v| v.shell().neighbours.at_border(t));
         let shadow = Stored::new(
-            seen.iter().copied(),
+            seen.iter().chain(unseen.iter().filter(at_border)).copied(),
             usize::MAX / (layers + 1),
             |t| lattice::corners(splits(&|v, t| v.shadow_subdivisions(t), t)),
             |t, at| triangles[t as usize].shadow_at = at,

@@ -77,8 +77,7 @@ impl Shadows {
             Journey { origin_m: prism.jacobian(&place).at_m, direction: self.to_light, start, far_m: f32::INFINITY }
         };
         let journeys: Vec<Journey> = places.iter().map(journey).collect();
-        let at_border = (0..3).any(|corner| shell.neighbours.beyond(triangle, corner).is_none());
-        let enough = if at_border { DARK_AT_BORDERS } else { DARK };
+        let enough = if shell.neighbours.at_border(triangle) { DARK_AT_BORDERS } else { DARK };
         let mut depths = volume.depths_along(&journeys, &TOWARDS_LIGHT, enough);
         if let Some(mean) = mean {
             for (depth, &(b, t)) in depths.iter_mut().zip(&places) {

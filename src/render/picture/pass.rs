@@ -71,7 +71,7 @@ impl<'a> Pass<'a> {
     ) -> Result<Self> {
         let guard = match pelt.guard {
             Some((strands, _)) => {
-                Some((strands, GuardShader::new(*pelt, strands, lighting, normals, mean, view.eye_m)?))
+                Some((strands, GuardShader::new(*pelt, strands, lighting, normals, mean, volume, view.eye_m)?))
             }
             None => None,
         };

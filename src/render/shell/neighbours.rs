@@ -52,6 +52,11 @@ impl Neighbours {
         self.sides.len() * size_of::<[Option<Beyond>; 3]>()
     }
 
+    /// Whether a triangle has an open edge.
+    pub fn at_border(&self, triangle: u32) -> bool {
+        self.sides[triangle as usize].contains(&None)
+    }
+
     /// Beyond the edge of `triangle` opposite to `corner`.
     pub fn beyond(&self, triangle: u32, corner: usize) -> Option<Beyond> {
         self.sides[triangle as usize][corner]

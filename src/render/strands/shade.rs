@@ -3,9 +3,11 @@
 use super::{LOOKS, look_s};
 use crate::data::strands::Strands;
 use crate::math::Vec3;
-use crate::math::lanes::{self, F32s, Isa, Row, Vec3Row, Vec3s};
+use crate::math::lanes::{self, F32s, Isa, MOST, Row, Vec3Row, Vec3s};
+use crate::render::march::volume::Volume;
 use crate::render::mean::MeanShadow;
 use crate::render::pelt::{Layer, Lighting, Pelt, ramps, sky_depths, slant_depths, terminator, terminators, through};
+use crate::render::shell::lattice::Lattices;
 use crate::render::table::Table;
 use crate::shade::lobes::Lobes;
 use crate::shade::{Angles, shadow_power};
@@ -18,6 +20,7 @@ pub struct GuardShader<'a> {
     lobes: Lobes<f32>,
     normals: &'a [Vec3],
     mean: Option<&'a MeanShadow<'a>>,
+    volume: Option<&'a Volume<'a>>,
     eye_m: Vec3,
     albedo_share: f32,
     /// Height at which no hair is left where the length field is 1, m.
@@ -37,6 +40,36 @@ struct LookSite {
     along: f32,
 }
 
+/// The column over a hair's root: hair is shadowed as it is at the same height.
+struct Column<'a> {
+    triangle: u32,
+    b: Vec3,
+    /// The shadow in the mean, and its share of the tips per height, 1/m.
+    mean: Option<(&'a MeanShadow<'a>, f32)>,
+    /// Beside an open border, where clumps are seen from their sides: the shadow with clumps up to undercoat's top, and t per
+    /// height, 1/m.
+    clumped: Option<(&'a Volume<'a>, f32, Lattices<'a>)>,
+}
+
+impl Column<'_> {
+    /// Optical depths towards the key light.
+    #[inline(always)]
+    fn depths<I: Isa>(&self, height_m: F32s<I>) -> F32s<I> {
+        let mut mean = Row::default();
+        if let Some((shadow, share_per_m)) = self.mean {
+            let share = (height_m * share_per_m).row();
+            for (depth, &share) in mean.0[..I::LANES].iter_mut().zip(&share.0) {
+                *depth = shadow.at(self.triangle, self.b, share).iter().sum();
+            }
+        }
+        let mean = F32s::of(&mean);
+        let Some((volume, t_per_m, lattices)) = &self.clumped else { return mean };
+        let t = height_m * *t_per_m;
+        let inside = !t.gt(F32s::splat(1.0));
+        inside.select(lattices.at(Vec3s::splat(self.b), volume.level(t.within(0.0, 1.0)), inside), mean)
+    }
+}
+
 impl<'a> GuardShader<'a> {
     /// For the pelt's guard hair; `normals` are the skin's smooth ones.
     ///
@@ -48,6 +81,7 @@ impl<'a> GuardShader<'a> {
         lighting: &'a Lighting,
         normals: &'a [Vec3],
         mean: Option<&'a MeanShadow<'a>>,
+        volume: Option<&'a Volume<'a>>,
         eye_m: Vec3,
     ) -> crate::Result<Self> {
         let lobes = Lobes::new(&pelt.hair.guard)?;
@@ -64,7 +98,7 @@ impl<'a> GuardShader<'a> {
             LookSite { s, piece, along: s * last - piece as f32 }
         };
         let sites = (0..LOOKS).map(site).collect();
-        Ok(Self { pelt, strands, lighting, lobes, normals, mean, eye_m, albedo_share, top_m, above, sites })
+        Ok(Self { pelt, strands, lighting, lobes, normals, mean, volume, eye_m, albedo_share, top_m, above, sites })
     }
 
     /// Appends the looks of some strands, root first.
@@ -88,9 +122,8 @@ impl<'a> GuardShader<'a> {
         let rise = lean.dot(normal).max(0.05);
         let share_of_top = 1.0 / (rise * self.top_m * length).max(f32::MIN_POSITIVE);
 
-        // Hair is shadowed as the column over its own root is at its height.
         let lit = terminator(self.lighting.key.to_light, normal) > 0.0;
-        let mean = self.mean.filter(|_| lit);
+        let column = lit.then(|| self.column(root.triangle, b, rise, length));
         let points = strands.points_of_m(strand);
         let last = points.len() - 1;
         let point = |i: usize| points[i.min(last)];
@@ -116,14 +149,7 @@ impl<'a> GuardShader<'a> {
                 normal,
                 lean: Vec3s::splat(lean),
                 above: self.above.at_lanes(height_m * share_of_top) * factor,
-                key_depth: mean.map_or(F32s::splat(0.0), |mean| {
-                    let share = (height_m * mean.share(1.0 / rise, length)).row();
-                    let mut depth = Row::default();
-                    for lane in 0..count {
-                        depth.0[lane] = mean.at(root.triangle, b, share.0[lane]).iter().sum();
-                    }
-                    F32s::of(&depth)
-                }),
+                key_depth: column.as_ref().map_or(F32s::splat(0.0), |column| column.depths(height_m)),
             };
             let Vec3s { x, y, z } = self.radiance(&spot);
             let log_radiance = Vec3s::new(log(x), log(y), log(z)).rows();
@@ -135,6 +161,17 @@ impl<'a> GuardShader<'a> {
         let mut row = Vec3Row::default();
         looks.iter().enumerate().for_each(|(i, &look)| row.set(i, look));
         row
+    }
+
+    fn column(&self, triangle: u32, b: Vec3, rise: f32, length: f32) -> Column<'a> {
+        let volume = self.volume.filter(|volume| volume.shell().neighbours.at_border(triangle));
+        let clumped = volume.map(|volume| {
+            let lattice = volume.shadows.lattice(volume, self.mean, triangle);
+            let mut lattices = Lattices::new(volume.layers());
+            (0..MOST).for_each(|lane| lattices.set(lane, lattice));
+            (volume, 1.0 / (rise * volume.shell().undercoat.height_m * length.max(1e-3)), lattices)
+        });
+        Column { triangle, b, mean: self.mean.map(|mean| (mean, mean.share(1.0 / rise, length))), clumped }
     }
 
     #[inline(always)]
