@@ -9,7 +9,7 @@ use furrier::render::cast::Caster;
 use furrier::render::pelt::Pelt;
 use furrier::render::picture::{Picture, Settings, draw};
 use furrier::render::rays::Rays;
-use furrier::render::resolve::{Blending, Face, Pile, Touch, composite};
+use furrier::render::resolve::{Blending, Face, composite, settle};
 use furrier::render::strands::ribbon::{Narrow, Share, Window, rasterise};
 use furrier::render::strands::{Fragment, Knot};
 use furrier::render::{DepthRange, Scene};
@@ -102,40 +102,46 @@ fn a_hair_thinner_than_a_pixel_covers_its_share() {
 }
 
 #[test]
-fn a_thousand_fragments_of_a_pixel_add_up() {
-    let mut pile = Pile::default();
-    let mut fragments = [Fragment::default(); 1000];
-    for id in 0..1000 {
-        let z_m = if id < 500 { 1.0 } else { 2.0 };
-        pile.add(&Touch { z_m, id, coverage: 0.002, opacity: 1.0, streak: id }, 0.0005, &mut fragments);
+fn a_thousand_fragments_at_one_depth_are_ordered_by_id() {
+    let mut random = Stream::new(5);
+    let mut fragments: Vec<Fragment> =
+        (0..1000).map(|id| Fragment::new(if id < 500 { 1.0 } else { 2.0 }, id, 0.002, id)).collect();
+    let draw = |fragments: &[Fragment]| {
+        composite(
+            Layers::All,
+            fragments,
+            &[],
+            Blending::Virtual { fragments: 1 },
+            0.001,
+            || None,
+            |f| {
+                let radiance = Vec3::splat(f.id() as f32 * 1e-3);
+                Face { z_m: f.z_m(), radiance, ..Default::default() }
+            },
+        )
+    };
+    let mut veil = [0.0; 1000];
+    let mut settled = |fragments: &mut [Fragment]| {
+        let count = settle(fragments, &mut veil, 0.0005);
+        draw(&fragments[..count])
+    };
+    let first = settled(&mut fragments);
+    assert!((first.alpha - (1.0 - 0.998_f32.powi(1000))).abs() < 1e-4, "{}", first.alpha);
+    for _ in 0..5 {
+        fragments.sort_by_cached_key(|_| random.bits());
+        assert_eq!(settled(&mut fragments), first);
     }
-    assert_eq!(pile.len(), 1000);
-    let skin = || None;
-    let pixel = composite(Layers::All, &fragments, &[], Blending::Virtual { fragments: 1 }, 0.001, skin, |f| Face {
-        z_m: f.z_m,
-        radiance: Vec3::splat(f.streak as f32 * 1e-3),
-        ..Default::default()
-    });
-    let left = 0.998_f32.powi(1000);
-    assert!((pixel.alpha - (1.0 - left)).abs() < 1e-4, "{}", pixel.alpha);
-    assert!((pile.through() - left).abs() < 1e-4, "{}", pile.through());
-    let mean = pixel.radiance.x / pixel.alpha;
-    let expected = (0..1000).map(|i| 1e-3 * i as f32 * 0.002 * 0.998_f32.powi(i)).sum::<f32>() / pixel.alpha;
-    assert!((mean - expected).abs() < 1e-3, "{mean}, not {expected}");
 }
 
 #[test]
 fn a_pixels_fragments_are_joined_and_cut_off() {
-    let touch = |z_m, id, coverage| Touch { z_m, id, coverage, opacity: 0.5, streak: id };
-    let mut pile = Pile::default();
-    let mut fragments = [Fragment::default(); 4];
-    for touch in [touch(1.0, 7, 0.4), touch(1.0, 7, 0.4), touch(2.0, 7, 0.4), touch(3.0, 8, 1.0), touch(4.0, 9, 1.0)] {
-        pile.add(&touch, 0.3, &mut fragments);
-    }
+    let of = |z_m, id, alpha| Fragment::new(z_m, id, alpha, id);
+    let mut fragments = [of(3.0, 8, 0.5), of(4.0, 9, 0.5), of(1.0, 7, 0.25), of(2.0, 7, 0.25)];
+    let mut veil = [0.0; 4];
     // A hair's neighbouring pieces cover the pixel once; the last one is hidden.
-    assert_eq!(pile.len(), 2);
-    assert_eq!((fragments[0].z_m, fragments[0].alpha, fragments[0].veil), (1.0, 0.5, 0.5));
-    assert_eq!((fragments[1].z_m, fragments[1].alpha, fragments[1].veil), (3.0, 0.5, 0.25));
+    assert_eq!(settle(&mut fragments, &mut veil, 0.3), 2);
+    assert_eq!((fragments[0].z_m(), fragments[0].id(), fragments[0].alpha, veil[0]), (1.0, 7, 0.5, 0.5));
+    assert_eq!((fragments[1].z_m(), fragments[1].id(), fragments[1].alpha, veil[1]), (3.0, 8, 0.5, 0.25));
 }
 
 #[test]

@@ -139,82 +139,51 @@ impl<const ALL: bool> Front<ALL> {
     }
 }
 
-/// What a hair covers of a pixel at one depth.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touch {
-    /// Depth along the optical axis, m.
-    pub z_m: f32,
-    /// Source index of the hair.
-    pub id: u32,
-    /// Covered share of the pixel, in (0, 1].
-    pub coverage: f32,
-    /// The hair's own opacity there, in [0, 1].
-    pub opacity: f32,
-    /// What it shows: index of a streak.
-    pub streak: u32,
-}
-
-/// A pixel's fragments as they come, by (depth, id). Neighbouring pieces of one hair are joined, since together they cover it
-/// once. What lies behind a front of transmittance `hidden` is left out: it could not be seen whatever else comes before it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pile {
-    id: u32,
-    coverage: f32,
-    opacity: f32,
-    /// Transmittance before the last fragment, and with it.
-    before: f32,
-    through: f32,
-    count: u32,
-    /// Whether more may be seen.
-    open: bool,
-}
-
-impl Default for Pile {
-    fn default() -> Self {
-        Self { id: 0, coverage: 0.0, opacity: 0.0, before: 1.0, through: 1.0, count: 0, open: true }
-    }
-}
-
-impl Pile {
-    /// Adds the next to `fragments`, which is long enough for all that come.
-    #[inline(always)]
-    pub fn add(&mut self, touch: &Touch, hidden: f32, fragments: &mut [Fragment]) {
-        if self.open && self.count > 0 && self.id == touch.id {
-            self.coverage = (self.coverage + touch.coverage).min(1.0);
+/// Orders a pixel's fragments by (depth, id), joins neighbouring pieces of one hair, since together they cover it once, and
+/// leaves out what lies behind a front of transmittance `hidden`: it could not be seen whatever else comes before it.
+///
+/// Returns how many are left. `veil` receives the transmittance up to and with each of them.
+pub fn settle(fragments: &mut [Fragment], veil: &mut [f32], hidden: f32) -> usize {
+    sort(fragments);
+    let (mut count, mut before, mut through) = (0, 1.0, 1.0);
+    for i in 0..fragments.len() {
+        let fragment = fragments[i];
+        if count > 0 && fragments[count - 1].id() == fragment.id() {
+            let alpha = &mut fragments[count - 1].alpha;
+            *alpha = (*alpha + fragment.alpha).min(1.0);
         } else {
-            self.open &= self.through >= hidden;
-            if !self.open {
-                return;
+            if through < hidden {
+                break;
             }
-            (self.id, self.coverage, self.opacity) = (touch.id, touch.coverage, touch.opacity);
-            self.before = self.through;
-            let fragment = &mut fragments[self.count as usize];
-            (fragment.z_m, fragment.streak) = (touch.z_m, touch.streak);
-            self.count += 1;
+            fragments[count] = fragment;
+            count += 1;
+            before = through;
         }
-        let alpha = self.coverage * self.opacity;
-        self.through = self.before * (1.0 - alpha);
-        let fragment = &mut fragments[self.count as usize - 1];
-        (fragment.alpha, fragment.veil) = (alpha, self.through);
+        through = before * (1.0 - fragments[count - 1].alpha);
+        veil[count - 1] = through;
     }
+    count
+}
 
-    /// How many there are.
-    pub fn len(&self) -> usize {
-        self.count as usize
+/// By [`Fragment::order`]. Few that are nearly in order, as most pixels have them, are best moved one by one.
+fn sort(fragments: &mut [Fragment]) {
+    const FEW: usize = 96;
+    if fragments.len() > FEW {
+        fragments.sort_unstable_by_key(Fragment::order);
+        return;
     }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-
-    /// Transmittance of all that were added.
-    pub fn through(&self) -> f32 {
-        self.through
+    for i in 1..fragments.len() {
+        let fragment = fragments[i];
+        let mut at = i;
+        while at > 0 && fragments[at - 1].order() > fragment.order() {
+            fragments[at] = fragments[at - 1];
+            at -= 1;
+        }
+        fragments[at] = fragment;
     }
 }
 
-/// Composites front to back. `fragments` are a [`Pile`]'s, `stretches` by where they begin; `face` says what a
+/// Composites front to back. `fragments` are ordered by [`settle`], `stretches` by where they begin; `face` says what a
 /// fragment's hair looks like, `skin` what lies behind all. Behind a front that lets through less than `opaque` nothing is looked at:
 /// the front stands for it. [`Layers::Light`] leaves out what it does not hold.
 pub fn composite(
@@ -250,15 +219,15 @@ fn blend<const ALL: bool>(
         if front.through < opaque {
             break;
         }
-        while next < fragments.len() && fragments[next].z_m <= stretch.from_m && front.through >= opaque {
+        while next < fragments.len() && fragments[next].z_m() <= stretch.from_m && front.through >= opaque {
             hair(&mut front, &fragments[next]);
             next += 1;
         }
         match blending {
             Blending::Virtual { .. } => {
                 let mut from_m = stretch.from_m;
-                while next < fragments.len() && fragments[next].z_m < stretch.to_m && front.through >= opaque {
-                    let to_m = fragments[next].z_m.max(from_m);
+                while next < fragments.len() && fragments[next].z_m() < stretch.to_m && front.through >= opaque {
+                    let to_m = fragments[next].z_m().max(from_m);
                     front.add_part(stretch, from_m, to_m);
                     hair(&mut front, &fragments[next]);
                     from_m = to_m;
@@ -277,7 +246,7 @@ fn blend<const ALL: bool>(
                     }
                     // Weighted by the fragment's own opacity, so that a hair's thinner share of a pixel takes less.
                     let own = fragment.alpha * unoccluded;
-                    alpha -= own * exp_negative(-attenuation_per_m * (fragment.z_m - stretch.from_m));
+                    alpha -= own * exp_negative(-attenuation_per_m * (fragment.z_m() - stretch.from_m));
                     unoccluded -= own;
                 }
                 let look = Face {

@@ -1,14 +1,13 @@
 //! Ribbons of guard hair into the fragments of a tile.
 
-use super::gather::{Gathered, Row, Stroke};
+use super::gather::Gathered;
 use super::pass::{Band, Pass};
 use super::tile::Place;
-use crate::data::film::Layers;
 use crate::data::strands::Strands;
 use crate::math::lanes::{self, F32s, Isa, Scalar, Vec3Row};
 use crate::render::bins::TILE;
-use crate::render::strands::ribbon::{self, Narrow, Window};
-use crate::render::strands::{Knot, Streak, radiance_at};
+use crate::render::strands::ribbon::{self, NARROW, Narrow, Window};
+use crate::render::strands::{Fragment, Knot, Streak, radiance_at};
 
 /// Draws pieces of strands into a tile, the nearest first.
 pub(super) struct Brush<'a, 'p> {
@@ -56,7 +55,7 @@ impl<'a> Brush<'a, '_> {
         let strand = piece / points;
         let first = piece - strand * points;
         let id = self.band.ids[strand as usize];
-        Some(Piece { a, b, looks: &self.band.looks[strand as usize], strand: strand as usize, first, id })
+        Some(Piece { a, b, looks: &self.band.looks[strand as usize], number: piece, first, id })
     }
 
     #[inline(always)]
@@ -66,13 +65,8 @@ impl<'a> Brush<'a, '_> {
             Some(narrow) => self.narrow::<I>(piece, &narrow),
             None => self.wide(piece),
         }
-        if self.guard.count() > before && self.pass.settings.layers != Layers::Light {
-            let points_m = self.strands.points_of_m(self.band.strands[piece.strand] as usize);
-            let first = piece.first as usize;
-            self.guard.keep_stroke(Stroke {
-                tangent: (points_m[first + 1] - points_m[first]).normalize_or_zero(),
-                tint: self.strands.tint[self.band.strands[piece.strand] as usize],
-            });
+        if self.guard.count() > before {
+            self.guard.keep_stroke(piece.number);
         }
     }
 
@@ -80,39 +74,42 @@ impl<'a> Brush<'a, '_> {
     fn narrow<I: Isa>(&mut self, piece: &Piece<'_>, narrow: &Narrow) {
         let Place { from, skin, .. } = *self.place;
         let (pass, stroke) = (self.pass, self.guard.next_stroke());
-        // Of a row, or a column where the ribbon lies flat, from one to the next and from pixel to pixel.
+        // From row to row, or from column to column where the ribbon lies flat, and from pixel to pixel.
         let (down, along) = if narrow.flat { (1, TILE) } else { (TILE, 1) };
         let [first_row, first_pixel] = if narrow.flat { [from[0], from[1]] } else { [from[1], from[0]] };
         let mut first = narrow.rows[0];
         while first < narrow.rows[1] {
             let found = narrow.rows::<I>(first);
             let sites = self.sites(piece, F32s::<I>::of(&found.along));
-            let mut kept = 0_u32;
-            for lane in 0..I::LANES.min((narrow.rows[1] - first) as usize) {
-                let count = found.count[lane] as usize;
-                if count == 0 {
+            let inside = u32::MAX >> (u32::BITS - (narrow.rows[1] - first).min(I::LANES as i32) as u32);
+            let origin = (first as usize - first_row) * down;
+            let (before, streak) = (self.guard.count(), self.guard.next_streak());
+            self.guard.make_room(NARROW * I::LANES);
+            for k in 0..NARROW {
+                let mut left = found.covered[k] & inside;
+                if left == 0 {
                     continue;
                 }
-                let line = first as usize + lane;
-                let pixel = (line - first_row) * down + (found.begin[lane] as usize - first_pixel) * along;
-                let row = Row::new(sites.z_m.0[lane], piece.id, sites.opacity.0[lane], pixel, along);
-                let linear = found.linear.0[lane];
-                let shares = found.coverage[..count].iter().map(|coverage| coverage.0[lane]);
-                let any = self.guard.push(row, shares, |at| {
-                    pass.before_skin(piece.a, piece.b, linear, self.place.pixel(at), row.z_m, skin, at)
-                });
-                kept |= u32::from(any) << lane;
+                let alpha = (F32s::<I>::of(&found.coverage[k]) * F32s::of(&sites.opacity)).row();
+                while left != 0 {
+                    let lane = left.trailing_zeros() as usize;
+                    left &= left - 1;
+                    let z_m = sites.z_m.0[lane];
+                    let pixel = origin + lane * down + (found.begin[lane] as usize + k - first_pixel) * along;
+                    let fragment = Fragment::new(z_m, piece.id, alpha.0[lane], streak + lane as u32);
+                    self.guard.add(fragment, pixel, || {
+                        let (at, linear) = (self.place.pixel(pixel), found.linear.0[lane]);
+                        pass.before_skin(piece.a, piece.b, linear, at, z_m, skin, pixel)
+                    });
+                }
             }
             first += I::LANES as i32;
-            if kept == 0 {
-                continue;
-            }
-            let s = F32s::<I>::of(&sites.s);
-            let radiance = radiance_at(piece.looks, s).rows();
-            while kept != 0 {
-                let lane = kept.trailing_zeros() as usize;
-                self.guard.show(Streak { radiance: radiance.lane(lane), s: sites.s.0[lane], stroke });
-                kept &= kept - 1;
+            if self.guard.count() > before {
+                let radiance = radiance_at(piece.looks, F32s::<I>::of(&sites.s)).rows();
+                for lane in 0..u32::BITS - inside.leading_zeros() {
+                    let lane = lane as usize;
+                    self.guard.show(Streak { radiance: radiance.lane(lane), s: sites.s.0[lane], stroke });
+                }
             }
         }
     }
@@ -123,13 +120,16 @@ impl<'a> Brush<'a, '_> {
         let (pass, stroke) = (self.pass, self.guard.next_stroke());
         ribbon::rasterise(piece.a, piece.b, self.window, |share| {
             let sites = self.sites(piece, F32s::<Scalar>::splat(share.along));
+            let (z_m, alpha) = (sites.z_m.0[0], share.coverage * sites.opacity.0[0]);
             let pixel = self.place.at(share.pixel[0] as usize, share.pixel[1] as usize);
-            let row = Row::new(sites.z_m.0[0], piece.id, sites.opacity.0[0], pixel, 1);
             let skin = self.place.skin;
-            let any = self.guard.push(row, std::iter::once(share.coverage), |at| {
-                pass.before_skin(piece.a, piece.b, share.linear, share.pixel, row.z_m, skin, at)
+            let before = self.guard.count();
+            let fragment = Fragment::new(z_m, piece.id, alpha, self.guard.next_streak());
+            self.guard.make_room(1);
+            self.guard.add(fragment, pixel, || {
+                pass.before_skin(piece.a, piece.b, share.linear, share.pixel, z_m, skin, pixel)
             });
-            if any {
+            if self.guard.count() > before {
                 let radiance = radiance_at(piece.looks, F32s::<Scalar>::of(&sites.s)).rows().lane(0);
                 self.guard.show(Streak { radiance, s: sites.s.0[0], stroke });
             }
@@ -161,8 +161,8 @@ struct Piece<'a> {
     a: &'a Knot,
     b: &'a Knot,
     looks: &'a Vec3Row,
-    /// The strand's number in the band.
-    strand: usize,
+    /// Its number in the band.
+    number: u32,
     /// Its number along the strand.
     first: u32,
     id: u32,

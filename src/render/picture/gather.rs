@@ -1,8 +1,8 @@
 //! The fragments of guard hair in one tile, pixel by pixel, each in its order of depth.
 
-use crate::math::{Vec3, radix};
+use crate::math::Vec3;
 use crate::render::bins::TILE;
-use crate::render::resolve::{HIDDEN, Pile, Touch};
+use crate::render::resolve::{HIDDEN, settle};
 use crate::render::strands::{Fragment, Streak};
 
 /// Pixels of a tile.
@@ -12,24 +12,23 @@ const BLOCK: usize = 8;
 /// Blocks along a tile's edge.
 const BLOCKS: usize = TILE / BLOCK;
 
-/// Fragments of a tile: rows of ribbons are gathered as they come, nearest pieces first, then dealt out to the pixels in the order
-/// of depth.
+/// Fragments of a tile: first gathered as they come, nearest pieces first, then settled pixel by pixel.
 pub(super) struct Gathered {
+    /// Pieces of which something may be seen.
+    pieces: Vec<u32>,
     strokes: Vec<Stroke>,
     streaks: Vec<Streak>,
-    /// As many as streaks.
-    rows: Vec<Row>,
-    /// Covered shares of the rows' pixels; 0 where nothing is seen.
-    shares: Vec<f32>,
+    /// Fragments as they came, and where they fall; longer than `count` says.
+    loose: Vec<(Fragment, u32)>,
+    count: usize,
     pixels: Vec<Fill>,
     /// Greatest limit in blocks of pixels, as it was a while ago: it only ever shrinks.
     block_m: [f32; BLOCKS * BLOCKS],
-    /// Depth's bits and number of each row.
-    order: Vec<u64>,
-    piles: Vec<Pile>,
     fragments: Vec<Fragment>,
-    /// First fragment of each pixel.
-    starts: Vec<u32>,
+    /// Transmittance of a pixel's fragments up to and with each.
+    veil: Vec<f32>,
+    /// First fragment of each pixel and one past the last.
+    spans: Vec<[u32; 2]>,
     /// Transmittance of a pixel's fragments behind which nothing is kept.
     hidden: f32,
 }
@@ -41,23 +40,6 @@ pub(super) struct Stroke {
     pub(super) tangent: Vec3,
     /// Colour that multiplies the profile's ramp.
     pub(super) tint: Vec3,
-}
-
-/// Pixels next to one another that a hair covers in part at one depth.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
-    /// Depth along the optical axis, m.
-    pub(super) z_m: f32,
-    /// Source index of the hair.
-    pub(super) id: u32,
-    /// The hair's own opacity, in [0, 1].
-    pub(super) opacity: f32,
-    /// First pixel of the tile.
-    pub(super) pixel: u16,
-    /// From one pixel to the next.
-    pub(super) stride: u16,
-    /// One past the last share.
-    end: u32,
 }
 
 /// What a pixel has gathered so far.
@@ -79,16 +61,16 @@ impl Default for Gathered {
     fn default() -> Self {
         let fill = Fill { limit_m: 0.0, clear_m: 0.0, through: 1.0, last_m: 0.0, count: 0 };
         Self {
+            pieces: Vec::new(),
             strokes: Vec::new(),
             streaks: Vec::new(),
-            rows: Vec::new(),
-            shares: Vec::new(),
+            loose: Vec::new(),
+            count: 0,
             pixels: vec![fill; PIXELS],
             block_m: [f32::INFINITY; BLOCKS * BLOCKS],
-            order: Vec::new(),
-            piles: vec![Pile::default(); PIXELS],
             fragments: Vec::new(),
-            starts: vec![0; PIXELS],
+            veil: Vec::new(),
+            spans: vec![[0; 2]; PIXELS],
             hidden: 0.0,
         }
     }
@@ -99,12 +81,10 @@ impl Gathered {
     /// that before which everything lies before the skin. A front that lets through less than `opaque` hides what is behind it.
     pub(super) fn begin(&mut self, opaque: f32, limits_m: impl Fn(usize) -> [f32; 2]) {
         self.hidden = HIDDEN * opaque;
+        self.pieces.clear();
         self.strokes.clear();
         self.streaks.clear();
-        self.rows.clear();
-        self.shares.clear();
-        self.fragments.clear();
-        self.piles.fill(Pile::default());
+        self.count = 0;
         for (at, fill) in self.pixels.iter_mut().enumerate() {
             let [limit_m, clear_m] = limits_m(at);
             *fill = Fill { limit_m, clear_m, through: 1.0, last_m: 0.0, count: 0 };
@@ -137,52 +117,65 @@ impl Gathered {
         self.pixels[pixel].limit_m
     }
 
-    /// Adds the shares of a row's pixels, from `row.pixel` on, where they may be seen; `before_skin` is asked where the skin is
-    /// near. Says whether there were any.
+    /// How many fragments were gathered.
     #[inline(always)]
-    pub(super) fn push(
-        &mut self,
-        row: Row,
-        shares: impl Iterator<Item = f32>,
-        before_skin: impl Fn(usize) -> bool,
-    ) -> bool {
-        let begin = self.shares.len();
-        let mut at = usize::from(row.pixel);
-        let mut any = false;
-        for share in shares {
-            let fill = &mut self.pixels[at];
-            let shown = share > 0.0 && row.z_m <= fill.limit_m && (row.z_m < fill.clear_m || before_skin(at));
-            if shown {
-                fill.add(row.z_m, share * row.opacity, self.hidden);
-            }
-            self.shares.push(if shown { share } else { 0.0 });
-            any |= shown;
-            at += usize::from(row.stride);
-        }
-        if any {
-            self.rows.push(Row { end: self.shares.len() as u32, ..row });
-        } else {
-            self.shares.truncate(begin);
-        }
-        any
+    pub(super) fn count(&self) -> usize {
+        self.count
     }
 
-    /// Says what the rows that were added last show, one by one.
+    /// Makes room for so many more fragments.
+    #[inline(always)]
+    pub(super) fn make_room(&mut self, more: usize) {
+        if self.loose.len() < self.count + more {
+            self.loose.resize(2 * (self.count + more), Default::default());
+        }
+    }
+
+    /// Adds a fragment where it may be seen; there must be room. `before_skin` is asked where the skin is near.
+    #[inline(always)]
+    pub(super) fn add(&mut self, fragment: Fragment, pixel: usize, before_skin: impl FnOnce() -> bool) {
+        let z_m = fragment.z_m();
+        let fill = &mut self.pixels[pixel];
+        if z_m <= fill.limit_m && (z_m < fill.clear_m || before_skin()) {
+            self.loose[self.count] = (fragment, pixel as u32);
+            self.count += 1;
+            fill.count += 1;
+            fill.last_m = if z_m > fill.last_m { z_m } else { fill.last_m };
+            // Pieces of one hair will be joined, which hides no less than one after the other.
+            fill.through *= 1.0 - fragment.alpha;
+            if fill.through < self.hidden {
+                fill.limit_m = if fill.last_m < fill.limit_m { fill.last_m } else { fill.limit_m };
+            }
+        }
+    }
+
+    /// The number of the next streak.
+    #[inline(always)]
+    pub(super) fn next_streak(&self) -> u32 {
+        self.streaks.len() as u32
+    }
+
+    /// Says what the fragments of the next streak show.
     #[inline(always)]
     pub(super) fn show(&mut self, streak: Streak) {
         self.streaks.push(streak);
     }
 
-    /// The number that the next piece will have.
+    /// The number of the next stroke.
     #[inline(always)]
     pub(super) fn next_stroke(&self) -> u32 {
-        self.strokes.len() as u32
+        self.pieces.len() as u32
     }
 
-    /// Says what a piece is like of which rows were added.
+    /// Says of which piece the fragments of the next stroke are.
     #[inline(always)]
-    pub(super) fn keep_stroke(&mut self, stroke: Stroke) {
-        self.strokes.push(stroke);
+    pub(super) fn keep_stroke(&mut self, piece: u32) {
+        self.pieces.push(piece);
+    }
+
+    /// Notes what the pieces look like.
+    pub(super) fn face(&mut self, stroke: impl Fn(u32) -> Stroke) {
+        self.strokes.extend(self.pieces.iter().map(|&piece| stroke(piece)));
     }
 
     /// What a fragment shows.
@@ -197,79 +190,44 @@ impl Gathered {
         &self.strokes[streak.stroke as usize]
     }
 
-    /// Puts every pixel's fragments in order, joins neighbouring pieces of one hair and leaves out what is hidden. `spare` is room.
-    pub(super) fn settle(&mut self, spare: &mut Vec<u64>) {
-        self.order.clear();
-        let keyed = |(number, row): (usize, &Row)| u64::from(row.z_m.to_bits()) << 32 | number as u64;
-        self.order.extend(self.rows.iter().enumerate().map(keyed));
-        radix::sort(&mut self.order, spare);
-        let rows = &self.rows;
-        let by_id = |&key: &u64| (rows[key as u32 as usize].id, key);
-        for equal in self.order.chunk_by_mut(|a, b| a >> 32 == b >> 32).filter(|equal| equal.len() > 1) {
-            equal.sort_unstable_by_key(by_id);
-        }
+    /// Puts every pixel's fragments in order, joins neighbouring pieces of one hair and leaves out what is hidden.
+    pub(super) fn settle(&mut self) {
         let mut end = 0;
-        for (start, fill) in self.starts.iter_mut().zip(&self.pixels) {
-            *start = end;
+        for (span, fill) in self.spans.iter_mut().zip(&self.pixels) {
+            *span = [end; 2];
             end += fill.count;
         }
         self.fragments.resize(end as usize, Fragment::default());
-        for &key in &self.order {
-            let number = key as u32 as usize;
-            let row = &self.rows[number];
-            let begin = if number == 0 { 0 } else { self.rows[number - 1].end as usize };
-            let mut at = usize::from(row.pixel);
-            for &coverage in &self.shares[begin..row.end as usize] {
-                if coverage > 0.0 {
-                    let touch =
-                        Touch { z_m: row.z_m, id: row.id, coverage, opacity: row.opacity, streak: number as u32 };
-                    self.piles[at].add(&touch, self.hidden, &mut self.fragments[self.starts[at] as usize..]);
-                }
-                at += usize::from(row.stride);
-            }
+        self.veil.resize(end as usize, 0.0);
+        for &(fragment, pixel) in &self.loose[..self.count] {
+            let next = &mut self.spans[pixel as usize][1];
+            self.fragments[*next as usize] = fragment;
+            *next += 1;
         }
-        for pixel in 0..PIXELS {
-            if let Some(last) = self.of(pixel).last().filter(|last| last.veil < self.hidden).copied() {
-                let limit_m = &mut self.pixels[pixel].limit_m;
-                *limit_m = limit_m.min(last.z_m);
+        for (pixel, span) in self.spans.iter_mut().enumerate() {
+            let [from, to] = span.map(|at| at as usize);
+            if from == to {
+                continue;
             }
+            let (fragments, veil) = (&mut self.fragments[from..to], &mut self.veil[from..to]);
+            let count = settle(fragments, veil, self.hidden);
+            if veil[count - 1] < self.hidden {
+                let limit_m = &mut self.pixels[pixel].limit_m;
+                *limit_m = limit_m.min(fragments[count - 1].z_m());
+            }
+            span[1] = (from + count) as u32;
         }
     }
 
     /// What a pixel has gathered, in order.
     pub(super) fn of(&self, pixel: usize) -> &[Fragment] {
-        &self.fragments[self.starts[pixel] as usize..][..self.piles[pixel].len()]
+        let [from, to] = self.spans[pixel];
+        &self.fragments[from as usize..to as usize]
     }
 
-    /// How many rows were gathered.
-    #[inline(always)]
-    pub(super) fn count(&self) -> usize {
-        self.rows.len()
-    }
-
-    /// How many fragments were gathered.
-    pub(super) fn len(&self) -> u64 {
-        self.pixels.iter().map(|fill| u64::from(fill.count)).sum()
-    }
-}
-
-impl Row {
-    /// Of hair `id` at depth `z_m`, m, as opaque as `opacity`, from a pixel of the tile on by strides.
-    #[inline(always)]
-    pub(super) fn new(z_m: f32, id: u32, opacity: f32, pixel: usize, stride: usize) -> Self {
-        Self { z_m, id, opacity, pixel: pixel as u16, stride: stride as u16, end: 0 }
-    }
-}
-
-impl Fill {
-    #[inline(always)]
-    fn add(&mut self, z_m: f32, alpha: f32, hidden: f32) {
-        self.count += 1;
-        self.last_m = self.last_m.max(z_m);
-        // Pieces of one hair will be joined, which hides no less than one after the other.
-        self.through *= 1.0 - alpha;
-        if self.through < hidden {
-            self.limit_m = self.limit_m.min(self.last_m);
-        }
+    /// Transmittance of a pixel's fragments up to and with each.
+    pub(super) fn veil(&self, pixel: usize) -> &[f32] {
+        let [from, to] = self.spans[pixel];
+        &self.veil[from as usize..to as usize]
     }
 }

@@ -3,10 +3,11 @@
 use super::Settings;
 use super::brush::Brush;
 use super::film::FilmRows;
-use super::gather::Gathered;
+use super::gather::{Gathered, Stroke};
 use super::pass::{Band, Pass};
 use super::undercoat::{self, PixelJourney};
 use crate::data::film::Layers;
+use crate::data::strands::Strands;
 use crate::math::{Vec2, Vec3};
 use crate::math::{lanes, radix};
 use crate::render::bins::TILE;
@@ -66,8 +67,11 @@ impl Pass<'_> {
         radix::sort(pieces, spare);
         let window = Window { from: place.from.map(|v| v as i32), to: place.to.map(|v| v as i32) };
         lanes::run(Brush { pass: self, strands, place, band, pieces, window, guard });
-        *fragment_count += guard.len();
-        guard.settle(spare);
+        *fragment_count += guard.count() as u64;
+        guard.settle();
+        if self.settings.layers != Layers::Light {
+            guard.face(|piece| self.stroke(strands, band, piece));
+        }
     }
 
     /// Depth behind which a pixel's skin hides hair wherever in the pixel it stands, m; infinite where there is none.
@@ -107,7 +111,7 @@ impl Pass<'_> {
             let (mut fragments, stretches) = (scratch.guard.of(at), &scratch.stretches[at]);
             if let Blending::Simplified { .. } = blending {
                 // Hair thins the undercoat before it, but only as far as that lets it be seen.
-                fragments = &fragments[..fragments.partition_point(|f| f.z_m <= scratch.opaque_m[at])];
+                fragments = &fragments[..fragments.partition_point(|f| f.z_m() <= scratch.opaque_m[at])];
             }
             let pixel = resolve::composite(layers, fragments, stretches, blending, opaque, skin_face, face);
             let depth_scale = pixel_ray(&self.view, x, y).length();
@@ -224,6 +228,14 @@ impl Pass<'_> {
         Some(skin::look(self.pelt, self.lighting, self.normals, self.mean, triangle, b, direction, z_m))
     }
 
+    /// What all fragments of a piece have in common.
+    fn stroke(&self, strands: &Strands, band: &Band, piece: u32) -> Stroke {
+        let points = strands.points_per_strand;
+        let (strand, first) = (band.strands[piece as usize / points] as usize, piece as usize % points);
+        let points_m = strands.points_of_m(strand);
+        Stroke { tangent: (points_m[first + 1] - points_m[first]).normalize_or_zero(), tint: strands.tint[strand] }
+    }
+
     #[inline(always)]
     fn hair_face(&self, fragment: &Fragment, guard: &Gathered) -> Face {
         let streak = guard.streak(fragment);
@@ -232,7 +244,7 @@ impl Pass<'_> {
         };
         let stroke = guard.stroke(streak);
         Face {
-            z_m: fragment.z_m,
+            z_m: fragment.z_m(),
             radiance: streak.radiance,
             albedo: stroke.tint * strands.profile.ramp_at(streak.s),
             tangent: stroke.tangent,

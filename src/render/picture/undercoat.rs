@@ -56,7 +56,7 @@ impl Work for Look<'_> {
             current: [first; MOST],
             through: Row::default(),
             veil: Row::default(),
-            hairs: [&[]; MOST],
+            hairs: [(&[], &[]); MOST],
             groups: Groups::default(),
             step_count: 0,
             look: self,
@@ -76,8 +76,8 @@ struct Sight<'a> {
     through: Row,
     /// Transmittance of the guard hair passed so far.
     veil: Row,
-    /// Guard hair not yet passed.
-    hairs: [&'a [Fragment]; MOST],
+    /// Guard hair not yet passed, and its transmittances.
+    hairs: [(&'a [Fragment], &'a [f32]); MOST],
     groups: Groups,
     step_count: u64,
 }
@@ -99,14 +99,14 @@ impl Sight<'_> {
     #[inline(always)]
     fn pass_hairs(&mut self, lane: usize) {
         let z_m = self.groups.to_m.0[lane] * self.current[lane].z_per_m;
-        let fragments = self.hairs[lane];
+        let (fragments, veil) = self.hairs[lane];
         let mut passed = 0;
-        while passed < fragments.len() && fragments[passed].z_m < z_m {
+        while passed < fragments.len() && fragments[passed].z_m() < z_m {
             passed += 1;
         }
         if passed > 0 {
-            self.veil.0[lane] = fragments[passed - 1].veil;
-            self.hairs[lane] = &fragments[passed..];
+            self.veil.0[lane] = veil[passed - 1];
+            self.hairs[lane] = (&fragments[passed..], &veil[passed..]);
         }
     }
 
@@ -142,7 +142,8 @@ impl<I: Isa> Traveller<I> for Sight<'_> {
         self.through.0[lane] = 1.0;
         self.veil.0[lane] = 1.0;
         if let Some(guard) = self.look.veiled {
-            self.hairs[lane] = guard.of(current.pixel as usize);
+            let pixel = current.pixel as usize;
+            self.hairs[lane] = (guard.of(pixel), guard.veil(pixel));
         }
         Some(current.journey)
     }

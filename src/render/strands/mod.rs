@@ -50,17 +50,41 @@ pub struct Knot {
     pub half_px: f32,
 }
 
-/// A share of a pixel that a hair covers, among the pixel's others in their order of depth.
+/// A share of a pixel that a hair covers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fragment {
-    /// Depth along the optical axis, m.
-    pub z_m: f32,
-    /// What it hides of the pixel, in [0, 1].
+    /// Depth's bits, then the hair's id: positive floats are ordered as their bits.
+    order: u64,
+    /// What it hides of the pixel, in [0, 1]: the covered share times the hair's own opacity.
     pub alpha: f32,
-    /// Transmittance of the pixel's fragments up to and with this one.
-    pub veil: f32,
-    /// What it shows: index of a [`Streak`].
+    /// What it shows: index of a [`Streak`], in the order of drawing.
     pub streak: u32,
+}
+
+impl Fragment {
+    /// Of hair `id` at depth `z_m` > 0 along the optical axis.
+    #[inline(always)]
+    pub fn new(z_m: f32, id: u32, alpha: f32, streak: u32) -> Self {
+        Self { order: u64::from(z_m.to_bits()) << 32 | u64::from(id), alpha, streak }
+    }
+
+    /// Depth along the optical axis, m.
+    #[inline(always)]
+    pub fn z_m(&self) -> f32 {
+        f32::from_bits((self.order >> 32) as u32)
+    }
+
+    /// Source index of the hair.
+    #[inline(always)]
+    pub fn id(&self) -> u32 {
+        self.order as u32
+    }
+
+    /// Sorts by depth, then id, then in the order of drawing.
+    #[inline(always)]
+    pub fn order(&self) -> (u64, u32) {
+        (self.order, self.streak)
+    }
 }
 
 /// A row of a ribbon, or a column where it lies flat: what its fragments have in common.

@@ -104,6 +104,9 @@ fn sweep<const FLAT: bool>(a: Point, b: Point, bounds: Bounds, mut emit: impl Fn
     }
 }
 
+/// The lanes' numbers.
+const RAMP: Row = Row([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+
 /// Most pixels of a row that [`rows`] can tell of.
 pub const NARROW: usize = 4;
 
@@ -114,6 +117,8 @@ pub struct Rows {
     pub begin: [u32; MOST],
     /// How many pixels it covers, at most [`NARROW`].
     pub count: [u32; MOST],
+    /// Of the first pixels, a bit for each row where something is covered.
+    pub covered: [u32; NARROW],
     /// Covered shares of the first pixels' areas.
     pub coverage: [Row; NARROW],
     /// As [`Share::linear`].
@@ -174,7 +179,7 @@ impl Narrow {
         let widen = (1.0 + slope * slope).sqrt();
         let (low, high) = if run > 0.0 { (self.major[0], self.major[1]) } else { (self.major[1], self.major[0]) };
         let full_drift = slope.abs();
-        let row = F32s::<I>::each(|lane| (first + lane as i32) as f32);
+        let row = F32s::<I>::of(&RAMP) + first as f32;
         let (from, to) = (row.max(F32s::splat(low)), (row + 1.0).min(F32s::splat(high)));
         let share = to - from;
         let linear = ((from + to) * 0.5 - self.major[0]) * per_run;
@@ -186,19 +191,25 @@ impl Narrow {
         let begin = (centre - reach).floor().max(F32s::splat(self.within[0] as f32));
         let end = (-(-(centre + reach)).floor()).min(F32s::splat(self.within[1] as f32));
         let (low_edge, high_edge) = (centre - half, centre + half);
-        let mut coverage = [Row::default(); NARROW];
-        let mut before = ramps(begin - low_edge, drift, per_drift) - ramps(begin - high_edge, drift, per_drift);
-        for (k, coverage) in coverage.iter_mut().enumerate() {
-            let x = begin + (k + 1) as f32;
-            let after = ramps(x - low_edge, drift, per_drift) - ramps(x - high_edge, drift, per_drift);
-            *coverage = ((after - before) * share).min(F32s::splat(1.0)).row();
-            before = after;
-        }
         let zero = F32s::splat(0.0);
         let count = share.gt(zero).keep((end - begin).max(zero).min(F32s::splat(NARROW as f32)));
+        let (mut coverage, mut covered) = ([Row::default(); NARROW], [0; NARROW]);
+        let mut before = ramps(begin - low_edge, drift, per_drift) - ramps(begin - high_edge, drift, per_drift);
+        for k in 0..NARROW {
+            let wanted = count.gt(F32s::splat(k as f32));
+            if wanted.bits() == 0 {
+                break;
+            }
+            let x = begin + (k + 1) as f32;
+            let after = ramps(x - low_edge, drift, per_drift) - ramps(x - high_edge, drift, per_drift);
+            let part = ((after - before) * share).min(F32s::splat(1.0));
+            (coverage[k], covered[k]) = (part.row(), (wanted & part.gt(zero)).bits());
+            before = after;
+        }
         Rows {
             begin: begin.to_whole().row(),
             count: count.to_whole().row(),
+            covered,
             coverage,
             linear: linear.row(),
             along: along.row(),
