@@ -175,7 +175,8 @@ fn sort(fragments: &mut [Fragment]) {
     for i in 1..fragments.len() {
         let fragment = fragments[i];
         let mut at = i;
-        while at > 0 && fragments[at - 1].order() > fragment.order() {
+        // Those of one place are in the order of drawing.
+        while at > 0 && fragments[at - 1].order().0 > fragment.order().0 {
             fragments[at] = fragments[at - 1];
             at -= 1;
         }

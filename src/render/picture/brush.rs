@@ -26,24 +26,32 @@ impl lanes::Work for Brush<'_, '_> {
 
     #[inline(always)]
     fn run<I: Isa>(mut self) {
+        let mut fetched = Vec::with_capacity(FETCH_AT_ONCE);
         for some in self.pieces.chunks(BOUND_EVERY) {
             if f32::from_bits((some[0] >> 32) as u32) > self.guard.bound() {
                 break;
             }
-            for &key in some {
-                if let Some(piece) = self.fetch(f32::from_bits((key >> 32) as u32), key as u32) {
-                    self.draw::<I>(&piece);
+            // Some are fetched at a time: the machine waits for several at once then.
+            for few in some.chunks(FETCH_AT_ONCE) {
+                fetched.clear();
+                for &key in few {
+                    if let Some(piece) = self.fetch(f32::from_bits((key >> 32) as u32), key as u32) {
+                        fetched.push(piece);
+                    }
+                }
+                for piece in &fetched {
+                    self.draw::<I>(piece);
                 }
             }
         }
     }
 }
 
-impl<'a> Brush<'a, '_> {
+impl Brush<'_, '_> {
     /// A piece, where it may be seen.
     #[inline(always)]
-    fn fetch(&self, nearest_m: f32, piece: u32) -> Option<Piece<'a>> {
-        let (a, b) = (&self.band.knots[piece as usize], &self.band.knots[piece as usize + 1]);
+    fn fetch(&self, nearest_m: f32, piece: u32) -> Option<Piece> {
+        let (a, b) = (self.band.knots[piece as usize], self.band.knots[piece as usize + 1]);
         let Place { from, to, .. } = *self.place;
         let pad = std::f32::consts::SQRT_2 * a.half_px.max(b.half_px);
         let columns = within(a.x, b.x, pad, from[0], to[0]);
@@ -55,13 +63,13 @@ impl<'a> Brush<'a, '_> {
         let strand = piece / points;
         let first = piece - strand * points;
         let id = self.band.ids[strand as usize];
-        Some(Piece { a, b, looks: &self.band.looks[strand as usize], number: piece, first, id })
+        Some(Piece { a, b, looks: self.band.looks[strand as usize], number: piece, first, id })
     }
 
     #[inline(always)]
-    fn draw<I: Isa>(&mut self, piece: &Piece<'_>) {
+    fn draw<I: Isa>(&mut self, piece: &Piece) {
         let before = self.guard.count();
-        match Narrow::new(piece.a, piece.b, self.window) {
+        match Narrow::new(&piece.a, &piece.b, self.window) {
             Some(narrow) => self.narrow::<I>(piece, &narrow),
             None => self.wide(piece),
         }
@@ -71,7 +79,7 @@ impl<'a> Brush<'a, '_> {
     }
 
     #[inline(always)]
-    fn narrow<I: Isa>(&mut self, piece: &Piece<'_>, narrow: &Narrow) {
+    fn narrow<I: Isa>(&mut self, piece: &Piece, narrow: &Narrow) {
         let Place { from, skin, .. } = *self.place;
         let (pass, stroke) = (self.pass, self.guard.next_stroke());
         // From row to row, or from column to column where the ribbon lies flat, and from pixel to pixel.
@@ -99,13 +107,13 @@ impl<'a> Brush<'a, '_> {
                     let fragment = Fragment::new(z_m, piece.id, alpha.0[lane], streak + lane as u32);
                     self.guard.add(fragment, pixel, || {
                         let (at, linear) = (self.place.pixel(pixel), found.linear.0[lane]);
-                        pass.before_skin(piece.a, piece.b, linear, at, z_m, skin, pixel)
+                        pass.before_skin(&piece.a, &piece.b, linear, at, z_m, skin, pixel)
                     });
                 }
             }
             first += I::LANES as i32;
             if self.guard.count() > before {
-                let radiance = radiance_at(piece.looks, F32s::<I>::of(&sites.s)).rows();
+                let radiance = radiance_at(&piece.looks, F32s::<I>::of(&sites.s)).rows();
                 for lane in 0..u32::BITS - inside.leading_zeros() {
                     let lane = lane as usize;
                     self.guard.show(Streak { radiance: radiance.lane(lane), s: sites.s.0[lane], stroke });
@@ -116,9 +124,9 @@ impl<'a> Brush<'a, '_> {
 
     /// A ribbon of any width, pixel by pixel.
     #[inline(always)]
-    fn wide(&mut self, piece: &Piece<'_>) {
+    fn wide(&mut self, piece: &Piece) {
         let (pass, stroke) = (self.pass, self.guard.next_stroke());
-        ribbon::rasterise(piece.a, piece.b, self.window, |share| {
+        ribbon::rasterise(&piece.a, &piece.b, self.window, |share| {
             let sites = self.sites(piece, F32s::<Scalar>::splat(share.along));
             let (z_m, alpha) = (sites.z_m.0[0], share.coverage * sites.opacity.0[0]);
             let pixel = self.place.at(share.pixel[0] as usize, share.pixel[1] as usize);
@@ -127,10 +135,10 @@ impl<'a> Brush<'a, '_> {
             let fragment = Fragment::new(z_m, piece.id, alpha, self.guard.next_streak());
             self.guard.make_room(1);
             self.guard.add(fragment, pixel, || {
-                pass.before_skin(piece.a, piece.b, share.linear, share.pixel, z_m, skin, pixel)
+                pass.before_skin(&piece.a, &piece.b, share.linear, share.pixel, z_m, skin, pixel)
             });
             if self.guard.count() > before {
-                let radiance = radiance_at(piece.looks, F32s::<Scalar>::of(&sites.s)).rows().lane(0);
+                let radiance = radiance_at(&piece.looks, F32s::<Scalar>::of(&sites.s)).rows().lane(0);
                 self.guard.show(Streak { radiance, s: sites.s.0[0], stroke });
             }
         });
@@ -138,7 +146,7 @@ impl<'a> Brush<'a, '_> {
 
     /// What a hair is like at places `along` a piece.
     #[inline(always)]
-    fn sites<I: Isa>(&self, piece: &Piece<'_>, along: F32s<I>) -> Sites {
+    fn sites<I: Isa>(&self, piece: &Piece, along: F32s<I>) -> Sites {
         let s = (along + piece.first as f32) * self.pass.per_piece;
         Sites {
             z_m: (along * (piece.b.z_m - piece.a.z_m) + piece.a.z_m).row(),
@@ -157,10 +165,10 @@ struct Sites {
 }
 
 /// A piece of a strand.
-struct Piece<'a> {
-    a: &'a Knot,
-    b: &'a Knot,
-    looks: &'a Vec3Row,
+struct Piece {
+    a: Knot,
+    b: Knot,
+    looks: Vec3Row,
     /// Its number in the band.
     number: u32,
     /// Its number along the strand.
@@ -174,6 +182,9 @@ fn within(a: f32, b: f32, pad: f32, from: usize, to: usize) -> [usize; 2] {
     let cut = |v: f32| ((v - from as f32).max(0.0) as i32 as usize).min(to - from - 1);
     [cut(a.min(b) - pad), cut(a.max(b) + pad)]
 }
+
+/// Pieces fetched before they are drawn.
+const FETCH_AT_ONCE: usize = 32;
 
 /// Pieces drawn between looks at what is hidden by now.
 const BOUND_EVERY: usize = 128;
