@@ -5,6 +5,7 @@
 mod faces;
 mod walk;
 
+use super::march::volume::OTHER_NS;
 use super::pelt::Pelt;
 use super::shell::Shell;
 use super::shell::prism::Place;
@@ -15,6 +16,8 @@ use crate::math::lanes::{self, MOST};
 use faces::{Faces, Meeting};
 use rayon::prelude::*;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 use walk::{Ray, Rays, Walk};
 
 /// Intervals of height up to the tips.
@@ -94,6 +97,8 @@ pub struct MeanShadow<'a> {
     /// Triangles around each vertex's position class.
     around: Vec<Vec<u32>>,
     cells: Vec<OnceLock<Depths>>,
+    /// Time spent filling, summed over threads, ns.
+    spent_ns: AtomicU64,
 }
 
 impl<'a> MeanShadow<'a> {
@@ -122,7 +127,13 @@ impl<'a> MeanShadow<'a> {
             twice_area_m2: (0..pelt.skin.triangles.len()).map(|t| 2.0 * pelt.skin.rest_area_m2(t)).collect(),
             cells: std::iter::repeat_with(OnceLock::new).take(around.len()).collect(),
             around,
+            spent_ns: AtomicU64::new(0),
         })
+    }
+
+    /// Time spent filling so far, summed over threads, ms.
+    pub fn filling_ms(&self) -> f64 {
+        self.spent_ns.load(Ordering::Relaxed) as f64 * 1e-6
     }
 
     /// Bytes held.
@@ -169,35 +180,48 @@ impl<'a> MeanShadow<'a> {
     }
 
     fn cell(&self, class: u32) -> &Depths {
-        self.cells[class as usize].get_or_init(|| {
-            let mut depths = Depths::default();
-            let mut others = Vec::new();
-            let (mut own, mut end) = ([0.0; 2], LAYERS + 1);
-            while end > 0 {
-                // Below where no light is left there is none.
-                if own[0] + own[1] >= DARK {
-                    depths[..end].fill(own);
-                    break;
-                }
-                let begin = end.saturating_sub(MOST);
-                let columns: Vec<Column> = (begin..end).map(|i| self.column(class, i)).collect();
-                let mut rays = Rays::default();
-                rays.iter_mut().zip(&columns).for_each(|(ray, column)| *ray = column.own);
-                let found = lanes::run(Walk { mean: self, rays: &rays });
-                for ((i, column), found) in (begin..end).zip(columns).zip(found).rev() {
-                    if own[0] + own[1] < DARK {
-                        own = found.depths;
-                    }
-                    depths[i] = own;
-                    // Where its own hair ends the ray has been.
-                    let other = |meeting: &Meeting| (meeting.at_m - found.end_m).abs() > SAME * column.tips_m;
-                    others.extend(column.meetings.into_iter().filter(other).map(|meeting| (i, meeting)));
-                }
-                end = begin;
-            }
-            self.add_others(&others, &mut depths);
+        let cell = &self.cells[class as usize];
+        if let Some(depths) = cell.get() {
+            return depths;
+        }
+        cell.get_or_init(|| {
+            let start = Instant::now();
+            let depths = self.fill(class);
+            let ns = start.elapsed().as_nanos() as u64;
+            self.spent_ns.fetch_add(ns, Ordering::Relaxed);
+            OTHER_NS.set(OTHER_NS.get() + ns);
             depths
         })
+    }
+
+    fn fill(&self, class: u32) -> Depths {
+        let mut depths = Depths::default();
+        let mut others = Vec::new();
+        let (mut own, mut end) = ([0.0; 2], LAYERS + 1);
+        while end > 0 {
+            // Below where no light is left there is none.
+            if own[0] + own[1] >= DARK {
+                depths[..end].fill(own);
+                break;
+            }
+            let begin = end.saturating_sub(MOST);
+            let columns: Vec<Column> = (begin..end).map(|i| self.column(class, i)).collect();
+            let mut rays = Rays::default();
+            rays.iter_mut().zip(&columns).for_each(|(ray, column)| *ray = column.own);
+            let found = lanes::run(Walk { mean: self, rays: &rays });
+            for ((i, column), found) in (begin..end).zip(columns).zip(found).rev() {
+                if own[0] + own[1] < DARK {
+                    own = found.depths;
+                }
+                depths[i] = own;
+                // Where its own hair ends the ray has been.
+                let other = |meeting: &Meeting| (meeting.at_m - found.end_m).abs() > SAME * column.tips_m;
+                others.extend(column.meetings.into_iter().filter(other).map(|meeting| (i, meeting)));
+            }
+            end = begin;
+        }
+        self.add_others(&others, &mut depths);
+        depths
     }
 
     /// The ray to the light from height number `i` above a vertex.

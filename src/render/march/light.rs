@@ -1,7 +1,7 @@
 //! Light in undercoat: the key light's shadow, stored by sub-element, and what a step sends to the eye.
 
 use super::prisms::Prisms;
-use super::volume::{DENSITY_NS, Volume};
+use super::volume::{OTHER_NS, Volume};
 use super::{Journey, Start, Stepping, Steps};
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, Vec3s};
@@ -57,9 +57,9 @@ impl Shadows {
             return lattice;
         }
         cell.get_or_init(|| {
-            let (start, density_ns) = (Instant::now(), DENSITY_NS.get());
+            let (start, before_ns) = (Instant::now(), OTHER_NS.get());
             let lattice = self.fill(volume, mean, triangle);
-            let other_ns = DENSITY_NS.get() - density_ns;
+            let other_ns = OTHER_NS.get() - before_ns;
             self.spent_ns.fetch_add((start.elapsed().as_nanos() as u64).saturating_sub(other_ns), Ordering::Relaxed);
             lattice
         })

@@ -19,8 +19,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 thread_local! {
-    /// Time that this thread has spent on filling densities, ns: shadows take their own without it.
-    pub(super) static DENSITY_NS: Cell<u64> = const { Cell::new(0) };
+    /// Time that this thread has spent on filling densities and the mean shadow, ns: shadows take their own without it.
+    pub(in crate::render) static OTHER_NS: Cell<u64> = const { Cell::new(0) };
 }
 
 /// How the volume is resolved.
@@ -223,7 +223,7 @@ impl<'a> Volume<'a> {
             let block = lanes::run(Fill { volume: self, triangle });
             let ns = start.elapsed().as_nanos() as u64;
             self.density_ns.fetch_add(ns, Ordering::Relaxed);
-            DENSITY_NS.set(DENSITY_NS.get() + ns);
+            OTHER_NS.set(OTHER_NS.get() + ns);
             block
         })
     }

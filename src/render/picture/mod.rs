@@ -160,8 +160,7 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
     let subdivisions = subdivisions(pelt, &view, settings);
     let volume = Volume::new(pelt, &normals, lighting.key.to_light, settings.resolution, subdivisions);
     let mean = MeanShadow::new(pelt, lighting.key.to_light);
-    let bytes = volume.as_ref().map_or(0, |v| v.shell().bytes()) + mean.as_ref().map_or(0, MeanShadow::bytes);
-    row(&mut picture, "shell", start, bytes);
+    row(&mut picture, "shell", start, volume.as_ref().map_or(0, |v| v.shell().bytes()));
     let thinning = settings.thinning(&view);
     let scene = Pass::new(pelt, lighting, &normals, volume.as_ref(), mean.as_ref(), view, thinning, settings)?;
     picture.film = scene.run(&mut picture);
@@ -213,6 +212,16 @@ fn shares<const N: usize>(picture: &mut Picture, start: Instant, parts: [(&'stat
     for (name, ns) in parts {
         add_row(picture, name, ms * ns as f64 / all_ns.max(1) as f64, 0);
     }
+}
+
+/// Gives what was filled of the mean shadow since it had taken `before_ms` a row of its own, out of the step that needed it.
+fn mean_row(picture: &mut Picture, step: &str, mean: Option<&MeanShadow<'_>>, before_ms: f64) {
+    let Some(mean) = mean else { return };
+    let ms = (mean.filling_ms() - before_ms) / rayon::current_num_threads() as f64;
+    if let Some(row) = picture.rows.iter_mut().find(|row| row.name == step) {
+        row.ms = (row.ms - ms).max(0.0);
+    }
+    add_row(picture, "mean shadow", ms, mean.bytes());
 }
 
 fn row(picture: &mut Picture, name: &'static str, start: Instant, bytes: usize) {

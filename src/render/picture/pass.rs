@@ -2,7 +2,7 @@
 
 use super::film::film_rows;
 use super::tile::{Place, Scratch};
-use super::{Picture, Settings, row, shares};
+use super::{Picture, Settings, mean_row, row, shares};
 use crate::data::film::Film;
 use crate::data::strands::Strands;
 use crate::error::Result;
@@ -128,13 +128,14 @@ impl<'a> Pass<'a> {
         row(picture, "strand geometry", start, strand_reach.len() * size_of::<Reach>());
 
         for grid in bands {
-            let start = Instant::now();
+            let (start, mean_ms) = (Instant::now(), self.mean_ms());
             let band = self.band(&grid, &strand_reach);
             let bytes = size_of_val(&band.knots[..]) + size_of_val(&band.looks[..]) + band.bins.bytes();
             row(picture, "shaded strands", start, bytes);
+            mean_row(picture, "shaded strands", self.mean, mean_ms);
             picture.counts.strands += band.strands.len() as u64;
 
-            let start = Instant::now();
+            let (start, mean_ms) = (Instant::now(), self.mean_ms());
             let mut rows = film_rows(&mut film, &grid, self.settings.edge_samples());
             // The longest first: none is left to one thread at the end.
             rows.sort_by_key(|rows| std::cmp::Reverse(band.bins.items_of(rows.row * grid.columns, grid.columns)));
@@ -171,11 +172,16 @@ impl<'a> Pass<'a> {
                 .reduce(|| [0; 5], |a, b| std::array::from_fn(|i| a[i] + b[i]));
             let parts = [("ribbons", ribbons_ns), ("march", march_ns), ("compositing", compositing_ns)];
             shares(picture, start, parts);
+            mean_row(picture, "march", self.mean, mean_ms);
             picture.counts.fragments += fragments;
             picture.counts.steps += steps;
             picture.counts.pieces += band.bins.items() as u64;
         }
         film
+    }
+
+    fn mean_ms(&self) -> f64 {
+        self.mean.map_or(0.0, MeanShadow::filling_ms)
     }
 
     pub(super) fn corners(&self, t: u32) -> [Vec3; 3] {
