@@ -105,7 +105,7 @@ fn a_hair_thinner_than_a_pixel_covers_its_share() {
 fn a_thousand_fragments_at_one_depth_are_ordered_by_id() {
     let mut random = Stream::new(5);
     let mut fragments: Vec<Fragment> =
-        (0..1000).map(|id| Fragment::new(if id < 500 { 1.0 } else { 2.0 }, id, 0.002, id)).collect();
+        (0..1000).map(|id| Fragment::new(if id < 500 { 1.0 } else { 2.0 }, id, [0.002, 1.0], id, 0)).collect();
     let draw = |fragments: &[Fragment]| {
         composite(
             Layers::All,
@@ -135,13 +135,13 @@ fn a_thousand_fragments_at_one_depth_are_ordered_by_id() {
 
 #[test]
 fn a_pixels_fragments_are_joined_and_cut_off() {
-    let of = |z_m, id, alpha| Fragment::new(z_m, id, alpha, id);
-    let mut fragments = [of(3.0, 8, 0.5), of(4.0, 9, 0.5), of(1.0, 7, 0.25), of(2.0, 7, 0.25)];
+    let of = |z_m, id, coverage| Fragment::new(z_m, id, [coverage, 0.5], id, 0);
+    let mut fragments = [of(3.0, 8, 1.0), of(4.0, 9, 1.0), of(1.0, 7, 0.5), of(2.0, 7, 0.5)];
     let mut veil = [0.0; 4];
     // A hair's neighbouring pieces cover the pixel once; the last one is hidden.
     assert_eq!(settle(&mut fragments, &mut veil, 0.3), 2);
-    assert_eq!((fragments[0].z_m(), fragments[0].id(), fragments[0].alpha, veil[0]), (1.0, 7, 0.5, 0.5));
-    assert_eq!((fragments[1].z_m(), fragments[1].id(), fragments[1].alpha, veil[1]), (3.0, 8, 0.5, 0.25));
+    assert_eq!((fragments[0].z_m(), fragments[0].id(), fragments[0].alpha(), veil[0]), (1.0, 7, 0.5, 0.5));
+    assert_eq!((fragments[1].z_m(), fragments[1].id(), fragments[1].alpha(), veil[1]), (3.0, 8, 0.5, 0.25));
 }
 
 #[test]

@@ -124,6 +124,7 @@ impl<const ALL: bool> Front<ALL> {
     }
 
     /// The part of a stretch between two depths.
+    #[inline(always)]
     fn add_part(&mut self, stretch: &Stretch, from_m: f32, to_m: f32) {
         let extent = stretch.to_m - stretch.from_m;
         let share = if extent > 0.0 { (to_m - from_m) / extent } else { 1.0 };
@@ -149,8 +150,8 @@ pub fn settle(fragments: &mut [Fragment], veil: &mut [f32], hidden: f32) -> usiz
     for i in 0..fragments.len() {
         let fragment = fragments[i];
         if count > 0 && fragments[count - 1].id() == fragment.id() {
-            let alpha = &mut fragments[count - 1].alpha;
-            *alpha = (*alpha + fragment.alpha).min(1.0);
+            let coverage = &mut fragments[count - 1].coverage;
+            *coverage = (*coverage + fragment.coverage).min(1.0);
         } else {
             if through < hidden {
                 break;
@@ -159,7 +160,7 @@ pub fn settle(fragments: &mut [Fragment], veil: &mut [f32], hidden: f32) -> usiz
             count += 1;
             before = through;
         }
-        through = before * (1.0 - fragments[count - 1].alpha);
+        through = before * (1.0 - fragments[count - 1].alpha());
         veil[count - 1] = through;
     }
     count
@@ -187,6 +188,7 @@ fn sort(fragments: &mut [Fragment]) {
 /// Composites front to back. `fragments` are ordered by [`settle`], `stretches` by where they begin; `face` says what a
 /// fragment's hair looks like, `skin` what lies behind all. Behind a front that lets through less than `opaque` nothing is looked at:
 /// the front stands for it. [`Layers::Light`] leaves out what it does not hold.
+#[inline(always)]
 pub fn composite(
     layers: Layers,
     fragments: &[Fragment],
@@ -214,7 +216,7 @@ fn blend<const ALL: bool>(
     let mut front = Front::<ALL> { pixel: Pixel::default(), through: 1.0 };
     let mut next = 0;
     let hair = |front: &mut Front<ALL>, fragment: &Fragment| {
-        front.add(fragment.alpha, &face(fragment), Kind::Guard);
+        front.add(fragment.alpha(), &face(fragment), Kind::Guard);
     };
     for stretch in stretches {
         if front.through < opaque {
@@ -246,7 +248,7 @@ fn blend<const ALL: bool>(
                         break;
                     }
                     // Weighted by the fragment's own opacity, so that a hair's thinner share of a pixel takes less.
-                    let own = fragment.alpha * unoccluded;
+                    let own = fragment.alpha() * unoccluded;
                     alpha -= own * exp_negative(-attenuation_per_m * (fragment.z_m() - stretch.from_m));
                     unoccluded -= own;
                 }

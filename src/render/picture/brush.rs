@@ -98,14 +98,14 @@ impl Brush<'_, '_> {
                 if left == 0 {
                     continue;
                 }
-                let alpha = (F32s::<I>::of(&found.coverage[k]) * F32s::of(&sites.opacity)).row();
                 while left != 0 {
                     let lane = left.trailing_zeros() as usize;
                     left &= left - 1;
                     let z_m = sites.z_m.0[lane];
                     let pixel = origin + lane * down + (found.begin[lane] as usize + k - first_pixel) * along;
-                    let fragment = Fragment::new(z_m, piece.id, alpha.0[lane], streak + lane as u32);
-                    self.guard.add(fragment, pixel, || {
+                    let parts = [found.coverage[k].0[lane], sites.opacity.0[lane]];
+                    let fragment = Fragment::new(z_m, piece.id, parts, streak + lane as u32, pixel as u32);
+                    self.guard.add(fragment, || {
                         let (at, linear) = (self.place.pixel(pixel), found.linear.0[lane]);
                         pass.before_skin(&piece.a, &piece.b, linear, at, z_m, skin, pixel)
                     });
@@ -128,15 +128,14 @@ impl Brush<'_, '_> {
         let (pass, stroke) = (self.pass, self.guard.next_stroke());
         ribbon::rasterise(&piece.a, &piece.b, self.window, |share| {
             let sites = self.sites(piece, F32s::<Scalar>::splat(share.along));
-            let (z_m, alpha) = (sites.z_m.0[0], share.coverage * sites.opacity.0[0]);
+            let (z_m, parts) = (sites.z_m.0[0], [share.coverage, sites.opacity.0[0]]);
             let pixel = self.place.at(share.pixel[0] as usize, share.pixel[1] as usize);
             let skin = self.place.skin;
             let before = self.guard.count();
-            let fragment = Fragment::new(z_m, piece.id, alpha, self.guard.next_streak());
+            let fragment = Fragment::new(z_m, piece.id, parts, self.guard.next_streak(), pixel as u32);
             self.guard.make_room(1);
-            self.guard.add(fragment, pixel, || {
-                pass.before_skin(&piece.a, &piece.b, share.linear, share.pixel, z_m, skin, pixel)
-            });
+            self.guard
+                .add(fragment, || pass.before_skin(&piece.a, &piece.b, share.linear, share.pixel, z_m, skin, pixel));
             if self.guard.count() > before {
                 let radiance = radiance_at(&piece.looks, F32s::<Scalar>::of(&sites.s)).rows().lane(0);
                 self.guard.show(Streak { radiance, s: sites.s.0[0], stroke });

@@ -18,8 +18,8 @@ pub(super) struct Gathered {
     pieces: Vec<u32>,
     strokes: Vec<Stroke>,
     streaks: Vec<Streak>,
-    /// Fragments as they came, and where they fall; longer than `count` says.
-    loose: Vec<(Fragment, u32)>,
+    /// Fragments as they came; longer than `count` says.
+    loose: Vec<Fragment>,
     count: usize,
     pixels: Vec<Fill>,
     /// Greatest limit in blocks of pixels, as it was a while ago: it only ever shrinks.
@@ -127,22 +127,22 @@ impl Gathered {
     #[inline(always)]
     pub(super) fn make_room(&mut self, more: usize) {
         if self.loose.len() < self.count + more {
-            self.loose.resize(2 * (self.count + more), Default::default());
+            self.loose.resize(2 * (self.count + more), Fragment::default());
         }
     }
 
     /// Adds a fragment where it may be seen; there must be room. `before_skin` is asked where the skin is near.
     #[inline(always)]
-    pub(super) fn add(&mut self, fragment: Fragment, pixel: usize, before_skin: impl FnOnce() -> bool) {
+    pub(super) fn add(&mut self, fragment: Fragment, before_skin: impl FnOnce() -> bool) {
         let z_m = fragment.z_m();
-        let fill = &mut self.pixels[pixel];
+        let fill = &mut self.pixels[fragment.pixel as usize];
         if z_m <= fill.limit_m && (z_m < fill.clear_m || before_skin()) {
-            self.loose[self.count] = (fragment, pixel as u32);
+            self.loose[self.count] = fragment;
             self.count += 1;
             fill.count += 1;
             fill.last_m = if z_m > fill.last_m { z_m } else { fill.last_m };
             // Pieces of one hair will be joined, which hides no less than one after the other.
-            fill.through *= 1.0 - fragment.alpha;
+            fill.through *= 1.0 - fragment.alpha();
             if fill.through < self.hidden {
                 fill.limit_m = if fill.last_m < fill.limit_m { fill.last_m } else { fill.limit_m };
             }
@@ -199,9 +199,9 @@ impl Gathered {
         }
         self.fragments.resize(end as usize, Fragment::default());
         self.veil.resize(end as usize, 0.0);
-        for &(fragment, pixel) in &self.loose[..self.count] {
-            let next = &mut self.spans[pixel as usize][1];
-            self.fragments[*next as usize] = fragment;
+        for fragment in &self.loose[..self.count] {
+            let next = &mut self.spans[fragment.pixel as usize][1];
+            self.fragments[*next as usize] = *fragment;
             *next += 1;
         }
         for (pixel, span) in self.spans.iter_mut().enumerate() {

@@ -158,8 +158,11 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
     let start = Instant::now();
     let view = settings.view(camera, pelt.skin.origin_m)?;
     let subdivisions = subdivisions(pelt, &view, settings);
-    let volume = Volume::new(pelt, &normals, lighting.key.to_light, settings.resolution, subdivisions);
-    let mean = MeanShadow::new(pelt, lighting.key.to_light);
+    let to_light = lighting.key.to_light;
+    let (volume, mean) = rayon::join(
+        || Volume::new(pelt, &normals, to_light, settings.resolution, subdivisions),
+        || MeanShadow::new(pelt, to_light),
+    );
     row(&mut picture, "shell", start, volume.as_ref().map_or(0, |v| v.shell().bytes()));
     let thinning = settings.thinning(&view);
     let scene = Pass::new(pelt, lighting, &normals, volume.as_ref(), mean.as_ref(), view, thinning, settings)?;

@@ -104,6 +104,11 @@ impl Pass<'_> {
 
     /// Puts what a tile's pixels hold into one order and colours the film.
     pub(super) fn compose(&self, place: &Place<'_>, scratch: &Scratch, out: &mut FilmRows<'_>) {
+        lanes::run(Compose { pass: self, place, scratch, out });
+    }
+
+    #[inline(always)]
+    fn compose_pixels(&self, place: &Place<'_>, scratch: &Scratch, out: &mut FilmRows<'_>) {
         let Settings { layers, blending, opaque, .. } = *self.settings;
         for (at, x, y) in place.pixels() {
             let skin_face = || self.skin_face(x, y, place.skin.triangle[at]);
@@ -250,6 +255,23 @@ impl Pass<'_> {
             tangent: stroke.tangent,
             normal: Vec3::ZERO,
         }
+    }
+}
+
+/// Colours the pixels of a tile, by the instructions of the machine at hand.
+struct Compose<'a, 'p, 'f> {
+    pass: &'a Pass<'p>,
+    place: &'a Place<'a>,
+    scratch: &'a Scratch,
+    out: &'a mut FilmRows<'f>,
+}
+
+impl lanes::Work for Compose<'_, '_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: lanes::Isa>(self) {
+        self.pass.compose_pixels(self.place, self.scratch, self.out);
     }
 }
 

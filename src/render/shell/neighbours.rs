@@ -1,7 +1,6 @@
 //! Which triangle lies beyond each edge (Andersen et al. 2016 §3.2, Fig. 7).
 
 use crate::data::mesh::Mesh;
-use std::collections::HashMap;
 
 /// The other side of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,26 +20,41 @@ pub struct Neighbours {
 impl Neighbours {
     /// Of a mesh, across UV and normal seams.
     ///
-    /// An edge's key is its two 32-bit position classes in one 64-bit number, in the order in which the triangle runs
-    /// through them; the neighbour has the reversed key. Where more than two triangles share an edge, or run through
+    /// An edge is known by its two position classes, in the order in which the triangle runs through them; the neighbour has
+    /// the reversed one. Where more than two triangles share an edge, or run through
     /// it the same way, the one with the lowest index is taken: a march goes on there, if into one sheet of several.
     pub fn new(mesh: &Mesh) -> Self {
-        let key = |from: u32, to: u32| u64::from(from) << 32 | u64::from(to);
         let classes = |t: usize| mesh.triangles[t].map(|v| mesh.position_class[v as usize]);
-        let mut edges: HashMap<u64, Beyond> = HashMap::with_capacity(3 * mesh.triangles.len());
+        let ends = |c: [u32; 3], corner: usize| [c[(corner + 1) % 3], c[(corner + 2) % 3]];
+        // The edges that begin at each class, in the order of the triangles.
+        let mut starts = vec![0_u32; mesh.positions_m.len() + 1];
+        for t in 0..mesh.triangles.len() {
+            classes(t).into_iter().for_each(|from| starts[from as usize + 1] += 1);
+        }
+        for class in 1..starts.len() {
+            starts[class] += starts[class - 1];
+        }
+        let mut next = starts.clone();
+        let mut edges = vec![(0_u32, Beyond { triangle: 0, corner: 0 }); 3 * mesh.triangles.len()];
         for t in 0..mesh.triangles.len() {
             let c = classes(t);
-            for corner in 0..3_u8 {
-                let (from, to) = (c[(usize::from(corner) + 1) % 3], c[(usize::from(corner) + 2) % 3]);
-                edges.entry(key(from, to)).or_insert(Beyond { triangle: t as u32, corner });
+            for corner in 0..3 {
+                let [from, to] = ends(c, corner);
+                let next = &mut next[from as usize];
+                edges[*next as usize] = (to, Beyond { triangle: t as u32, corner: corner as u8 });
+                *next += 1;
             }
         }
+        let edge = |from: u32, to: u32| {
+            let [begin, end] = [starts[from as usize], starts[from as usize + 1]].map(|at| at as usize);
+            edges[begin..end].iter().find(|(other, _)| *other == to).map(|&(_, beyond)| beyond)
+        };
         let sides = (0..mesh.triangles.len())
             .map(|t| {
                 let c = classes(t);
                 [0, 1, 2].map(|corner| {
-                    let beyond = edges.get(&key(c[(corner + 2) % 3], c[(corner + 1) % 3])).copied();
-                    beyond.filter(|b| b.triangle != t as u32)
+                    let [from, to] = ends(c, corner);
+                    edge(to, from).filter(|b| b.triangle != t as u32)
                 })
             })
             .collect();

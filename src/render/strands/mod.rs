@@ -55,17 +55,27 @@ pub struct Knot {
 pub struct Fragment {
     /// Depth's bits, then the hair's id: positive floats are ordered as their bits.
     order: u64,
-    /// What it hides of the pixel, in [0, 1]: the covered share times the hair's own opacity.
-    pub alpha: f32,
+    /// Covered share of the pixel, in (0, 1].
+    pub coverage: f32,
+    /// The hair's own opacity there, in [0, 1].
+    pub opacity: f32,
     /// What it shows: index of a [`Streak`], in the order of drawing.
     pub streak: u32,
+    /// Where it falls.
+    pub pixel: u32,
 }
 
 impl Fragment {
-    /// Of hair `id` at depth `z_m` > 0 along the optical axis.
+    /// Of hair `id` at depth `z_m` > 0 along the optical axis, on a pixel.
     #[inline(always)]
-    pub fn new(z_m: f32, id: u32, alpha: f32, streak: u32) -> Self {
-        Self { order: u64::from(z_m.to_bits()) << 32 | u64::from(id), alpha, streak }
+    pub fn new(z_m: f32, id: u32, [coverage, opacity]: [f32; 2], streak: u32, pixel: u32) -> Self {
+        Self { order: u64::from(z_m.to_bits()) << 32 | u64::from(id), coverage, opacity, streak, pixel }
+    }
+
+    /// What it hides of the pixel.
+    #[inline(always)]
+    pub fn alpha(&self) -> f32 {
+        self.coverage * self.opacity
     }
 
     /// Depth along the optical axis, m.
