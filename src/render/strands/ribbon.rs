@@ -221,7 +221,7 @@ impl Narrow {
 #[inline(always)]
 fn beside(within: [i32; 2], reach: f32, minor: [f32; 2], major: [f32; 2], rows: [i32; 2]) -> [i32; 2] {
     let per_minor = (major[1] - major[0]) / (minor[1] - minor[0]);
-    if !(per_minor.abs() < STEEPEST) {
+    if per_minor.is_nan() || per_minor.abs() >= STEEPEST {
         return rows;
     }
     // With a row to spare for rounding.
