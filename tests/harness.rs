@@ -234,3 +234,8 @@ fn the_reference_sees_a_light_a_tenth_too_weak() {
     let difference = crate::oracle::against_reference(&lighting);
     assert_eq!(crate::oracle::fault(&difference), Some("bias"));
 }
+
+#[test]
+fn the_reference_sees_hair_a_thousandth_too_wide() {
+    assert!(crate::oracle::largest_gap(1.001) > 1e-4);
+}

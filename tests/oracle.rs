@@ -3,11 +3,13 @@
 use crate::pelts::{self, Grown};
 use crate::undercoat::{Cylinders, depth_of_volume, directions, on_level_skin};
 use furrier::data::film::Film;
+use furrier::math::hash::Stream;
 use furrier::math::{DVec3, Vec3};
 use furrier::metrics::compare::{Difference, Light, compare};
 use furrier::render::pelt::Lighting;
 use furrier::render::picture::{self, draw};
 use furrier::render::reference::bvh::Ray;
+use furrier::render::reference::cone;
 use furrier::render::reference::medium::{Counted, Medium};
 use furrier::render::reference::{self, Settings};
 
@@ -54,22 +56,22 @@ fn thin() -> Grown {
 
 const SIZE: [usize; 2] = [48, 48];
 
-fn by_reference(grown: &Grown, lighting: &Lighting, samples: usize, seed: u64) -> Film {
-    let settings = Settings { samples, lightness_error: 0.0, seed, ..Settings::new(SIZE) };
+fn by_reference(grown: &Grown, lighting: &Lighting, lines: usize, seed: u64) -> Film {
+    let settings = Settings { lines, lightness_error: f64::INFINITY, seed, ..Settings::new(SIZE) };
     reference::draw(&grown.pelt(), lighting, &pelts::camera(0.35), &settings).unwrap()
 }
 
 /// The renderer's picture under `lighting` against the reference under the usual light.
 pub fn against_reference(lighting: &Lighting) -> Difference {
     let grown = thin();
-    let film = by_reference(&grown, &pelts::studio(), 48, 1);
+    let film = by_reference(&grown, &pelts::studio(), 4, 1);
     let drawn = draw(&grown.pelt(), lighting, &pelts::camera(0.35), &picture::Settings::best(SIZE)).unwrap().film;
     let difference = compare(&Light::from(&film), &Light::from(&drawn)).unwrap();
     println!("{difference:?}");
     difference
 }
 
-/// What is off, of a picture of 48² against 48 rays per pixel.
+/// What is off, of a picture of 48² against 4 lines per pixel.
 pub fn fault(difference: &Difference) -> Option<&'static str> {
     let [reference, drawn] = difference.coverage;
     [
@@ -94,4 +96,55 @@ fn a_reference_has_the_same_bytes_on_any_number_of_threads() {
         pool.install(|| by_reference(&grown, &pelts::studio(), 2, 5))
     };
     assert_eq!(with(1), with(3));
+}
+
+/// Of random round cones, the largest share of the stretch that a line sees of one by which it begins or ceases elsewhere than
+/// where its rays do, where the former are `wider` than the latter.
+pub fn largest_gap(wider: f64) -> f64 {
+    let mut random = Stream::new(7);
+    let mut unit = || f64::from(random.unit());
+    let base = DVec3::new(0.0, 0.1, 1.0);
+    let step = DVec3::new(0.01, 0.0, 0.0);
+    let mut largest = 0.0_f64;
+    let mut met = 0;
+    while met < 200 {
+        let mut point = || DVec3::new(0.005 * unit() - 0.001, 0.05 + 0.003 * (unit() - 0.5), 0.5 + 0.01 * unit());
+        let ends = [point(), point()];
+        let radii = [1e-4 * unit(), 1e-4 * unit()];
+        let Some([from, to]) = cone::extent(ends[0], ends[1], radii.map(|r| r * wider), base, step) else { continue };
+        met += 1;
+        let meets = |x: f64| cone::enter_and_leave(ends[0], ends[1], radii, (base + step * x).normalize()).is_some();
+        // The cone is convex: what its rays see of it is one stretch, too.
+        let edge = |mut inside: f64, mut outside: f64| {
+            for _ in 0..40 {
+                let middle = 0.5 * (inside + outside);
+                *(if meets(middle) { &mut inside } else { &mut outside }) = middle;
+            }
+            inside
+        };
+        let (middle, length) = (0.5 * (from + to), to - from);
+        let gaps = [edge(middle, from - length) - from, to - edge(middle, to + length)];
+        largest = gaps.into_iter().fold(largest, |largest, gap| largest.max(gap.abs() / length));
+    }
+    largest
+}
+
+#[test]
+fn a_line_sees_a_hair_where_its_rays_meet_it() {
+    let gap = largest_gap(1.0);
+    assert!(gap < 1e-5, "{gap} of a stretch");
+}
+
+/// Mean FLIP and difference of mean luminance between two seeds of the reference.
+fn between_seeds(lines: usize) -> Difference {
+    let grown = thin();
+    let [a, b] = [1, 2].map(|seed| by_reference(&grown, &pelts::studio(), lines, seed));
+    compare(&Light::from(&a), &Light::from(&b)).unwrap()
+}
+
+#[test]
+fn more_lines_bring_two_seeds_closer() {
+    let [few, more] = [1, 4].map(between_seeds);
+    println!("FLIP {:.4} of a line, {:.4} of four; bias {:+.4} and {:+.4}", few.flip, more.flip, few.bias, more.bias);
+    assert!(more.flip < 0.75 * few.flip && more.bias.abs() < 0.005);
 }

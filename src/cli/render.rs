@@ -86,10 +86,10 @@ pub struct Render {
     /// How much work to spend
     #[arg(long, value_enum, default_value = "preview")]
     quality: Quality,
-    /// Most rays per pixel of a reference
-    #[arg(long, value_name = "N", default_value_t = reference::SAMPLES, value_parser = clap::value_parser!(u32).range(1..))]
-    samples: u32,
-    /// Where the rays of a reference pass: two pictures of different numbers tell its noise
+    /// Lines per pixel of a reference, each looked at whole; where they differ, up to five times as many
+    #[arg(long, value_name = "N", default_value_t = reference::LINES, value_parser = clap::value_parser!(u32).range(1..))]
+    lines: u32,
+    /// Where the lines of a reference lie: two pictures of different numbers tell its noise
     #[arg(long, value_name = "N", default_value_t = 0)]
     ray_seed: u64,
     /// Which hair to draw
@@ -288,11 +288,8 @@ impl Render {
 
     fn reference(&self, grown: &Grown, lighting: &Lighting, camera: &Camera, size: [usize; 2]) -> Result<Drawn> {
         let start = Instant::now();
-        let settings = reference::Settings {
-            samples: self.samples as usize,
-            seed: self.ray_seed,
-            ..reference::Settings::new(size)
-        };
+        let settings =
+            reference::Settings { lines: self.lines as usize, seed: self.ray_seed, ..reference::Settings::new(size) };
         let film = grown.reference(lighting, camera, &settings)?;
         let rows = vec![Row { name: "reference", ms: start.elapsed().as_secs_f64() * 1e3, bytes: 0 }];
         let picture = Picture { film, rows, counts: Counts::default() };

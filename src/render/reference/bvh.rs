@@ -1,6 +1,6 @@
 //! A plain hierarchy of boxes in f64: halves by the middle item along the widest axis.
 
-use crate::math::DVec3;
+use crate::math::{DVec3, Vec3};
 
 const LEAF: usize = 4;
 /// Items from which on halves are built side by side.
@@ -66,6 +66,48 @@ struct Node {
     count: u32,
 }
 
+/// The plane piece between two rays from one eye, and how far it reaches.
+#[derive(Clone, Copy, Debug)]
+pub struct Wedge {
+    eye_m: DVec3,
+    /// Out of its plane, and inwards from both rays.
+    normals: [DVec3; 3],
+    /// Its middle direction, unit.
+    ahead: DVec3,
+    /// Where it ends along the middle direction, m.
+    far_m: f64,
+}
+
+impl Wedge {
+    /// Between rays along `from` and `to`, which are not one, up to a distance.
+    pub fn new(eye_m: DVec3, from: DVec3, to: DVec3, far_m: f64) -> Self {
+        let plane = from.cross(to).normalize();
+        let ahead = (from + to).normalize();
+        Self { eye_m, normals: [plane, plane.cross(from), to.cross(plane)], ahead, far_m }
+    }
+
+    /// How far along its middle direction a point is, m.
+    pub fn ahead_m(&self, point_m: DVec3) -> f64 {
+        (point_m - self.eye_m).dot(self.ahead)
+    }
+
+    /// How far beside its plane a point is, m, with a sign.
+    pub fn beside_m(&self, point_m: DVec3) -> f64 {
+        (point_m - self.eye_m).dot(self.normals[0])
+    }
+
+    /// Whether it may meet a box.
+    pub fn meets(&self, bounds: &Bounds) -> bool {
+        let middle = 0.5 * (bounds.low + bounds.high) - self.eye_m;
+        let half = 0.5 * (bounds.high - bounds.low);
+        let [plane, left, right] = self.normals;
+        plane.dot(middle).abs() <= plane.abs().dot(half)
+            && left.dot(middle) >= -left.abs().dot(half)
+            && right.dot(middle) >= -right.abs().dot(half)
+            && self.ahead.dot(middle) - self.ahead.abs().dot(half) <= self.far_m
+    }
+}
+
 /// The hierarchy.
 #[derive(Debug, Default)]
 pub struct Bvh {
@@ -76,9 +118,16 @@ pub struct Bvh {
 impl Bvh {
     /// Over items with these boxes.
     pub fn new(bounds: &[Bounds]) -> Self {
-        let mut items: Vec<u32> = (0..bounds.len() as u32).collect();
-        let nodes = if items.is_empty() { Vec::new() } else { halve(bounds, &mut items, 0) };
-        Self { nodes, items }
+        let mut items: Vec<Item> = bounds
+            .iter()
+            .zip(0..)
+            .map(|(b, index)| Item { middle: (0.5 * (b.low + b.high)).as_vec3(), index })
+            .collect();
+        let mut nodes = vec![Node { bounds: Bounds::NOTHING, first: 0, count: 0 }; nodes_over(items.len())];
+        if !items.is_empty() {
+            halve(bounds, &mut items, 0, &mut nodes);
+        }
+        Self { nodes, items: items.into_iter().map(|item| item.index).collect() }
     }
 
     /// Calls `visit` for every item whose box a ray meets between `near` and `far`; `visit` returns a new `far`.
@@ -96,6 +145,29 @@ impl Bvh {
                 for &item in &self.items[node.first as usize..(node.first + node.count) as usize] {
                     far = visit(item, far);
                 }
+            } else {
+                stack[depth] = index as u32 + node.first;
+                stack[depth + 1] = index as u32 + 1;
+                depth += 2;
+            }
+        }
+    }
+
+    /// Calls `visit` for every item in leaves whose boxes a wedge meets.
+    pub fn visit_wedge(&self, wedge: &Wedge, mut visit: impl FnMut(u32)) {
+        let mut stack = [0_u32; 64];
+        let mut depth = usize::from(!self.nodes.is_empty());
+        while depth > 0 {
+            depth -= 1;
+            let index = stack[depth] as usize;
+            let node = &self.nodes[index];
+            if !wedge.meets(&node.bounds) {
+                continue;
+            }
+            if node.count > 0 {
+                self.items[node.first as usize..(node.first + node.count) as usize]
+                    .iter()
+                    .for_each(|&item| visit(item));
             } else {
                 stack[depth] = index as u32 + node.first;
                 stack[depth + 1] = index as u32 + 1;
@@ -136,30 +208,47 @@ impl Bvh {
     }
 }
 
-fn halve(bounds: &[Bounds], items: &mut [u32], begin: usize) -> Vec<Node> {
-    let all = items.iter().fold(Bounds::NOTHING, |all, &i| {
-        let b = &bounds[i as usize];
-        Bounds { low: all.low.min(b.low), high: all.high.max(b.high) }
-    });
-    if items.len() <= LEAF {
-        return vec![Node { bounds: all, first: begin as u32, count: items.len() as u32 }];
+/// An item while it is sorted.
+#[derive(Clone, Copy)]
+struct Item {
+    middle: Vec3,
+    index: u32,
+}
+
+/// Nodes over so many items.
+fn nodes_over(items: usize) -> usize {
+    match items {
+        0 => 0,
+        1..=LEAF => 1,
+        _ => 1 + nodes_over(items / 2) + nodes_over(items - items / 2),
     }
-    let centre = |i: u32| bounds[i as usize].low + bounds[i as usize].high;
-    let centres = Bounds::of(items.iter().map(|&i| centre(i)), 0.0);
-    let extent = centres.high - centres.low;
+}
+
+/// Fills the nodes over some items; gives their box.
+fn halve(bounds: &[Bounds], items: &mut [Item], begin: usize, nodes: &mut [Node]) -> Bounds {
+    let join = |a: Bounds, b: &Bounds| Bounds { low: a.low.min(b.low), high: a.high.max(b.high) };
+    let count = items.len();
+    if count <= LEAF {
+        let all = items.iter().fold(Bounds::NOTHING, |all, item| join(all, &bounds[item.index as usize]));
+        nodes[0] = Node { bounds: all, first: begin as u32, count: count as u32 };
+        return all;
+    }
+    let [low, high] = items
+        .iter()
+        .fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], i| [low.min(i.middle), high.max(i.middle)]);
+    let extent = high - low;
     let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0);
-    let middle = items.len() / 2;
-    items.select_nth_unstable_by(middle, |&a, &b| centre(a)[axis].total_cmp(&centre(b)[axis]).then(a.cmp(&b)));
-    let side_by_side = items.len() >= PARALLEL;
-    let (left, right) = items.split_at_mut(middle);
-    let (left, right) = if side_by_side {
-        rayon::join(|| halve(bounds, left, begin), || halve(bounds, right, begin + middle))
+    let half = count / 2;
+    items.select_nth_unstable_by(half, |a, b| a.middle[axis].total_cmp(&b.middle[axis]).then(a.index.cmp(&b.index)));
+    let (left, right) = items.split_at_mut(half);
+    let (node, below) = nodes.split_at_mut(1);
+    let (left_nodes, right_nodes) = below.split_at_mut(nodes_over(half));
+    node[0].first = 1 + left_nodes.len() as u32;
+    let (left, right) = if count >= PARALLEL {
+        rayon::join(|| halve(bounds, left, begin, left_nodes), || halve(bounds, right, begin + half, right_nodes))
     } else {
-        (halve(bounds, left, begin), halve(bounds, right, begin + middle))
+        (halve(bounds, left, begin, left_nodes), halve(bounds, right, begin + half, right_nodes))
     };
-    let mut nodes = Vec::with_capacity(1 + left.len() + right.len());
-    nodes.push(Node { bounds: all, first: 1 + left.len() as u32, count: 0 });
-    nodes.extend(left);
-    nodes.extend(right);
-    nodes
+    node[0].bounds = join(left, &right);
+    node[0].bounds
 }

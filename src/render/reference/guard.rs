@@ -1,6 +1,8 @@
-//! Guard hair as round cones in f64: every hair that a ray enters, once each.
+//! Guard hair as round cones in f64: every piece that is seen on a line, and where rays enter it.
 
 use super::bvh::{Bounds, Bvh, Ray};
+use super::cone;
+use super::line::Line;
 use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;
 use crate::math::DVec3;
@@ -17,8 +19,21 @@ pub struct Crossing {
     pub strand: u32,
     /// Where along the hair, in its points.
     pub knot: f64,
-    /// The last of its pieces that the ray is in before it leaves the hair.
-    piece: u32,
+    /// Which piece of it.
+    pub piece: u32,
+}
+
+/// Where on a line a piece of hair is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strip {
+    /// From and to, in [0, 1].
+    pub x: [f64; 2],
+    /// No ray enters it before, m.
+    pub near_m: f64,
+    /// The hair.
+    pub strand: u32,
+    /// Which piece of it.
+    pub piece: u32,
 }
 
 /// All guard hair in one hierarchy.
@@ -27,7 +42,6 @@ pub struct Guard<'a> {
     strands: &'a Strands,
     skin: &'a Mesh,
     bvh: Bvh,
-    widest_m: f64,
 }
 
 impl<'a> Guard<'a> {
@@ -42,60 +56,60 @@ impl<'a> Guard<'a> {
                 Bounds::of(strands.points_m[at..=at + 1].iter().map(|p| p.as_dvec3()), radius_m)
             })
             .collect();
-        let widest_m = 2.0 * f64::from(strands.root_radius_m.iter().copied().fold(0.0, f32::max));
-        Self { strands, skin, bvh: Bvh::new(&bounds), widest_m }
+        Self { strands, skin, bvh: Bvh::new(&bounds) }
     }
 
-    /// Where, from `near_m` on, a ray first comes close to hair.
-    pub fn first(&self, ray: &Ray, near_m: f64) -> f64 {
-        self.bvh.first(ray, near_m)
-    }
-
-    /// The hairs that a ray enters between two distances, nearest first.
-    pub fn crossings(&self, ray: &Ray, from_m: f64, to_m: f64, out: &mut Vec<Crossing>) {
+    /// The pieces that are seen on a line nearer than `far_m`, from its beginning to its end.
+    pub fn strips(&self, line: &Line, far_m: f64, out: &mut Vec<Strip>) {
         out.clear();
+        let wedge = line.wedge(far_m);
         let pieces = self.strands.points_per_strand as u32 - 1;
-        let near_m = from_m - 2.0 * self.widest_m;
-        self.bvh.visit(ray, near_m, to_m, |item, far| {
+        self.bvh.visit_wedge(&wedge, |item| {
             let (strand, piece) = (item / pieces, item % pieces);
-            out.extend(self.cross(ray, strand, piece).filter(|c| c.leave_m >= near_m && c.enter_m <= to_m));
-            far
-        });
-        // Where two pieces meet, a ray may be in both: that is one entry into one hair.
-        out.sort_unstable_by_key(|c| (c.strand, c.piece));
-        out.dedup_by(|next, kept| {
-            let same = next.strand == kept.strand
-                && next.piece <= kept.piece + 1
-                && next.enter_m <= kept.leave_m
-                && kept.enter_m <= next.leave_m;
-            if same {
-                if next.enter_m < kept.enter_m {
-                    (kept.enter_m, kept.knot) = (next.enter_m, next.knot);
-                }
-                kept.leave_m = kept.leave_m.max(next.leave_m);
-                kept.piece = next.piece;
+            let ([from_m, to_m], radius_m) = self.ends(strand, piece);
+            let near_m = wedge.ahead_m(from_m).min(wedge.ahead_m(to_m)) - radius_m[0].max(radius_m[1]);
+            let beside = [from_m, to_m].map(|end_m| wedge.beside_m(end_m));
+            let apart = beside[0] * beside[1] > 0.0 && (0..2).all(|i| beside[i].abs() > radius_m[i]);
+            if near_m >= far_m || apart {
+                return;
             }
-            same
+            let Some([from, to]) = line.extent(from_m, to_m, radius_m) else { return };
+            let x = [from.max(0.0), to.min(1.0)];
+            if x[0] < x[1] {
+                out.push(Strip { x, near_m, strand, piece });
+            }
         });
-        out.retain(|c| c.enter_m >= from_m && c.enter_m < to_m);
-        out.sort_unstable_by(|a, b| a.enter_m.total_cmp(&b.enter_m).then(self.id(a).cmp(&self.id(b))));
+        out.sort_unstable_by(|a, b| {
+            a.x[0].total_cmp(&b.x[0]).then((self.id(a.strand), a.piece).cmp(&(self.id(b.strand), b.piece)))
+        });
     }
 
-    /// Source index of the hair.
-    fn id(&self, crossing: &Crossing) -> u32 {
-        self.strands.id[crossing.strand as usize]
+    /// From end to end of a strip's piece, unit.
+    pub fn way(&self, strip: &Strip) -> DVec3 {
+        let ([from_m, to_m], _) = self.ends(strip.strand, strip.piece);
+        (to_m - from_m).normalize_or_zero()
+    }
+
+    /// Source index of a hair.
+    pub fn id(&self, strand: u32) -> u32 {
+        self.strands.id[strand as usize]
+    }
+
+    /// The hairs.
+    pub fn strands(&self) -> &'a Strands {
+        self.strands
     }
 
     /// Where along the hair, in [0, 1].
-    pub fn s(&self, crossing: &Crossing) -> f64 {
-        crossing.knot / (self.strands.points_per_strand - 1) as f64
+    pub fn s(&self, knot: f64) -> f64 {
+        knot / (self.strands.points_per_strand - 1) as f64
     }
 
     /// The hair's own opacity there: 1 − (e^{ks} − 1)/(e^k − 1)·transparency.
-    pub fn opacity(&self, crossing: &Crossing) -> f64 {
+    pub fn opacity(&self, knot: f64) -> f64 {
         let profile = &self.strands.profile;
         let k = f64::from(profile.tip_exponent);
-        let share = libm::expm1(k * self.s(crossing)) / libm::expm1(k);
+        let share = libm::expm1(k * self.s(knot)) / libm::expm1(k);
         1.0 - share * f64::from(profile.tip_transparency)
     }
 
@@ -106,63 +120,28 @@ impl<'a> Guard<'a> {
         (b - a).cross(c - a)
     }
 
-    fn cross(&self, ray: &Ray, strand: u32, piece: u32) -> Option<Crossing> {
+    /// Ends of a piece, m, and its radii there, m.
+    fn ends(&self, strand: u32, piece: u32) -> ([DVec3; 2], [f64; 2]) {
         let points = self.strands.points_of_m(strand as usize);
         let last = (points.len() - 1) as f64;
-        let profile = &self.strands.profile;
         let root_radius_m = f64::from(self.strands.root_radius_m[strand as usize]);
-        let radius_m = |i: u32| root_radius_m * (1.0 + (f64::from(profile.taper) - 1.0) * f64::from(i) / last);
-        let end = |i: u32| points[i as usize].as_dvec3();
-        let (from, to) = (end(piece) - ray.origin_m, end(piece + 1) - ray.origin_m);
-        let [enter_m, leave_m, along] = round_cone(from, to, [radius_m(piece), radius_m(piece + 1)], ray.direction)?;
+        let taper = f64::from(self.strands.profile.taper);
+        let ends = [piece, piece + 1];
+        (
+            ends.map(|i| points[i as usize].as_dvec3()),
+            ends.map(|i| root_radius_m * (1.0 + (taper - 1.0) * f64::from(i) / last)),
+        )
+    }
+
+    /// Where a ray enters a piece.
+    pub fn cross(&self, ray: &Ray, strand: u32, piece: u32) -> Option<Crossing> {
+        let ([from_m, to_m], radius_m) = self.ends(strand, piece);
+        let (from, to) = (from_m - ray.origin_m, to_m - ray.origin_m);
+        let [enter_m, leave_m, along] = cone::enter_and_leave(from, to, radius_m, ray.direction)?;
         // The root's round end lies under the skin: none is seen through the bare side of a pelt.
-        if piece == 0 && (ray.direction * enter_m - from).dot(self.up(strand)) < 0.0 {
+        if enter_m < 0.0 || piece == 0 && (ray.direction * enter_m - from).dot(self.up(strand)) < 0.0 {
             return None;
         }
         Some(Crossing { enter_m, leave_m, strand, knot: f64::from(piece) + along, piece })
     }
-}
-
-/// Where the line through the origin along `direction` enters and leaves the union of spheres whose centre and radius go
-/// linearly from end to end, and where along the piece its axis passes the entry.
-///
-/// The sphere at s is met where g(s) = r² − D² ≥ 0, D the distance of its centre from the line, and then at the distances
-/// p(s) ∓ √g(s), p the centre's projection. g is a quadratic; the first entry is its interval's least p − √g, which lies
-/// at an end or where the derivative vanishes: p′ √g = g′/2.
-fn round_cone(from: DVec3, to: DVec3, radius: [f64; 2], direction: DVec3) -> Option<[f64; 3]> {
-    let axis = to - from;
-    let (p0, dp) = (from.dot(direction), axis.dot(direction));
-    let (e0, de) = (from - direction * p0, axis - direction * dp);
-    let dr = radius[1] - radius[0];
-    let (a, b, c) =
-        (dr * dr - de.length_squared(), radius[0] * dr - e0.dot(de), radius[0] * radius[0] - e0.length_squared());
-    let g = |s: f64| c + s * (2.0 * b + a * s);
-    let root = (b * b - a * c).sqrt();
-    let (first, second) = ((-b + root) / a, (-b - root) / a);
-    let (low, high) = match (g(0.0) > 0.0, g(1.0) > 0.0) {
-        (true, true) => (0.0, 1.0),
-        (true, false) => (0.0, if a < 0.0 { second } else { first.min(second) }),
-        (false, true) => (if a < 0.0 { first } else { first.max(second) }, 1.0),
-        (false, false) if a < 0.0 && first > 0.0 && second < 1.0 && first < second => (first, second),
-        (false, false) => return None,
-    };
-    let end = |s: f64, sign: f64| p0 + s * dp + sign * g(s).max(0.0).sqrt();
-    let mut best = [f64::INFINITY, f64::NEG_INFINITY, 0.0];
-    let mut offer = |s: f64| {
-        if end(s, -1.0) < best[0] {
-            (best[0], best[2]) = (end(s, -1.0), s);
-        }
-        best[1] = best[1].max(end(s, 1.0));
-    };
-    offer(low);
-    offer(high);
-    // dp² g = (b + a s)²: a quadratic in s.
-    let (qa, qb, qc) = (a * a - dp * dp * a, a * b - dp * dp * b, b * b - dp * dp * c);
-    let root = (qb * qb - qa * qc).sqrt();
-    for s in [(-qb - root) / qa, (-qb + root) / qa] {
-        if s > low && s < high {
-            offer(s);
-        }
-    }
-    (best[0].is_finite()).then_some(best)
 }

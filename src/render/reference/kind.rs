@@ -19,6 +19,10 @@ pub struct Kind {
     diameter_m: f64,
     /// Standard deviation of each hair's slope against the mean.
     slope: f64,
+    /// Share of hairs that reach heights from the skin to `top`, and the density of their ends there.
+    reach: Vec<[f64; 2]>,
+    /// Density of the ends of the tallest, below the top.
+    brim: f64,
     /// Width per hair at heights from the skin to `top`, m, with opacity counted; empty where all have one.
     widths_m: Vec<f64>,
 }
@@ -36,7 +40,7 @@ impl Kind {
         let height_m = f64::from(fibre.height_m());
         let top = height_m / shell_height_m;
         let mean = top / (1.0 + f64::from(LENGTH_SPREAD) * variation);
-        Self {
+        let mut kind = Self {
             per_m2: f64::from(fibre.density_per_m2),
             top,
             stretch: f64::from(fibre.longest_m()) / height_m.max(f64::MIN_POSITIVE),
@@ -44,8 +48,14 @@ impl Kind {
             spread: mean * variation,
             diameter_m: f64::from(fibre.radius_m) * (1.0 + f64::from(fibre.profile.taper)),
             slope: libm::tan(f64::from(fibre.shape.jitter_deg).to_radians()),
+            reach: Vec::new(),
+            brim: 0.0,
             widths_m: Vec::new(),
-        }
+        };
+        // All that reaches the top ends below it.
+        kind.reach = (0..=WIDTHS).map(|i| kind.reaching(top * (i as f64 / WIDTHS as f64).min(1.0 - 1e-12))).collect();
+        kind.brim = kind.reach[WIDTHS][0] / (BRIM * top);
+        kind
     }
 
     /// Of hair that tapers and grows transparent: guard hair.
@@ -80,7 +90,11 @@ impl Kind {
         }
         let side = up_m * self.stretch * self.mean_sine(sine);
         if self.widths_m.is_empty() {
-            let (share, ends) = self.reaching(t);
+            let at = t / self.top * WIDTHS as f64;
+            let low = (at as usize).min(WIDTHS - 1);
+            let [from, to] = [self.reach[low], self.reach[low + 1]];
+            let [share, ends] = [0, 1].map(|i| from[i] + (at - low as f64) * (to[i] - from[i]));
+            let ends = ends + if t > self.top * (1.0 - BRIM) { self.brim } else { 0.0 };
             return share * self.diameter_m * side
                 + ends * FRAC_PI_4 * self.diameter_m * self.diameter_m * cosine.abs();
         }
@@ -91,16 +105,12 @@ impl Kind {
     }
 
     /// Share of hairs that reach height `t`, and the density of their ends there.
-    fn reaching(&self, t: f64) -> (f64, f64) {
-        let share = |t: f64| match self.spread {
-            spread if spread < 1e-6 => f64::from(u8::from(t < self.mean)),
-            spread => 0.5 * libm::erfc((t - self.mean) / spread * FRAC_1_SQRT_2),
-        };
+    fn reaching(&self, t: f64) -> [f64; 2] {
+        if self.spread < 1e-6 {
+            return [f64::from(u8::from(t < self.mean)), 0.0];
+        }
         let z = (t - self.mean) / self.spread;
-        let ends = if self.spread < 1e-6 { 0.0 } else { libm::exp(-0.5 * z * z) / (self.spread * (2.0 * PI).sqrt()) };
-        let left = share(self.top * (1.0 - 1e-12));
-        let brim = BRIM * self.top;
-        (share(t), ends + if t > self.top - brim { left / brim } else { 0.0 })
+        [0.5 * libm::erfc(z * FRAC_1_SQRT_2), libm::exp(-0.5 * z * z) / (self.spread * (2.0 * PI).sqrt())]
     }
 
     /// Mean sine to the hairs whose mean has this sine: as `Undercoat::mean_sine`.

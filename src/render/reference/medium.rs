@@ -1,18 +1,26 @@
 //! What fills the shell, at every point exactly: undercoat with its crowding, and guard hair in the mean.
 
 use super::bvh::Ray;
+use super::crowd::Points;
 use super::kind::{BRIM, Kind};
 use super::quadrature::{gauss, integrate};
-use super::shell::{Place, Slabs, Span};
+use super::shell::{Place, Slabs, Span, Spot};
 use crate::fur::groom::clump::Nearby;
 use crate::fur::undercoat::{Pattern, Undercoat};
+use crate::math::lanes::MOST;
 use crate::math::{DVec3, Vec3};
 use crate::render::pelt::Pelt;
 use crate::render::shell::Shell;
 use std::cell::RefCell;
 
 /// Where Gauss's and Kronrod's optical depths of a stretch agree so far, the latter's error is far less.
-const TOLERANCE: f64 = 0.05;
+pub const TOLERANCE: f64 = 0.1;
+
+/// The same for shadows, of which many make up a pixel.
+const ROUGHLY: f64 = 0.2;
+
+/// Of the longest stretch, shorter ones than this share are smooth enough for Gauss's rule alone.
+const SHORT: f64 = 0.3;
 
 /// Slabs of the shell up to the undercoat's tips, and from there to the guard hair's.
 const SLABS: [usize; 2] = [6, 3];
@@ -34,6 +42,8 @@ pub struct Medium<'a> {
     rest_normals: Option<Vec<Vec3>>,
     undercoat: Option<Kind>,
     guard: Option<Kind>,
+    /// Twice the area of each triangle at rest, m².
+    twice_area_m2: Vec<f64>,
     /// Longest stretch that is integrated at once, m.
     detail_m: f64,
 }
@@ -69,7 +79,12 @@ impl<'a> Medium<'a> {
         if top > 1.0 {
             heights.extend((1..=beyond).map(|i| 1.0 + (top - 1.0) * i as f64 / beyond as f64));
         }
-        Some(Self { slabs: Slabs::new(&shell, heights), shell, normals, rest_normals, undercoat, guard, detail_m })
+        let twice_area_m2 = (0..pelt.skin.triangles.len())
+            .map(|t| pelt.skin.rest_corners_m(t).map(|p| p.as_dvec3()))
+            .map(|[a, b, c]| (b - a).cross(c - a).length())
+            .collect();
+        let slabs = Slabs::new(&shell, heights);
+        Some(Self { slabs, shell, normals, rest_normals, undercoat, guard, twice_area_m2, detail_m })
     }
 
     /// A field's value at a place.
@@ -91,39 +106,77 @@ impl<'a> Medium<'a> {
 
     /// Mean direction of hair at a place, unit.
     pub fn hair(&self, place: &Place) -> DVec3 {
-        self.slabs.frame(place).0.normalize_or(DVec3::Y)
+        self.slabs.up_m(place).normalize_or(DVec3::Y)
     }
 
-    /// Blocked share per length of a ray along `direction`, 1/m.
-    fn extinction(&self, place: &Place, direction: DVec3, counted: Counted) -> f64 {
-        let (up, determinant) = self.slabs.frame(place);
-        let up_m = up.length();
-        let hair = up / up_m;
-        let (sine, cosine) = (hair.cross(direction).length(), hair.dot(direction));
-        let fields = self.shell.fields;
-        let foot_m = self.shell.skin.rest_corners_m(place.triangle as usize).map(|p| p.as_dvec3());
-        let area2_m2 = (foot_m[1] - foot_m[0]).cross(foot_m[2] - foot_m[0]).length();
-        let standing = self.scalar(&fields.density, place) * area2_m2 / determinant;
-        let mut sum = 0.0;
-        if let Some(kind) = &self.undercoat {
-            let bare = kind.per_m2 * kind.extinction(place.t, up_m, sine, cosine);
-            if bare > 0.0 {
-                let clump = self.scalar(&fields.clump, place) as f32;
-                let root_m = foot_m[0] * place.b.x + foot_m[1] * place.b.y + foot_m[2] * place.b.z;
-                let normals = self.rest_normals.as_deref().unwrap_or(self.normals);
-                let normal = self.vector(normals, place).normalize_or(DVec3::Y);
-                let undercoat = &self.shell.undercoat;
-                let crowding = NEARBY.with_borrow_mut(|nearby| {
-                    undercoat.column_near(nearby, root_m.as_vec3(), normal.as_vec3(), clump).crowding(place.t as f32)
-                });
-                sum += bare * f64::from(crowding);
+    /// Blocked shares per length at places of a ray that lie in some spans, 1/m.
+    pub fn extinctions<'s, const N: usize>(
+        &self,
+        spans: impl Iterator<Item = &'s Span>,
+        direction: DVec3,
+        at_m: [f64; N],
+        counted: Counted,
+    ) -> [f64; N] {
+        let mut found = [0.0; N];
+        NEARBY.with_borrow_mut(|nearby| {
+            let mut points = Points::default();
+            let mut waiting = [(0, 0.0); MOST];
+            let mut count = 0;
+            let mut crowd = |points: &mut Points, waiting: &[(usize, f64)], found: &mut [f64; N]| {
+                let crowding = points.crowding(&self.shell.undercoat, nearby);
+                for (&(i, bare), crowding) in waiting.iter().zip(crowding) {
+                    found[i] += bare * f64::from(crowding);
+                }
+            };
+            for span in spans {
+                for (i, &at_m) in at_m.iter().enumerate() {
+                    for spot in span.sight.spots(at_m) {
+                        let [bare, guard] = self.uncrowded(&spot, direction, counted);
+                        found[i] += guard;
+                        if bare > 0.0 {
+                            self.push(&spot.place, &mut points);
+                            waiting[count] = (i, bare);
+                            count += 1;
+                        }
+                        if points.is_full() {
+                            crowd(&mut points, &waiting, &mut found);
+                            count = 0;
+                        }
+                    }
+                }
             }
-        }
-        if let (Counted::Both, Some(kind)) = (counted, &self.guard) {
-            sum += kind.per_m2 * kind.extinction(place.t, up_m, sine, cosine);
-        }
-        let sum = sum * standing;
-        if sum.is_finite() { sum } else { 0.0 }
+            if count > 0 {
+                crowd(&mut points, &waiting[..count], &mut found);
+            }
+        });
+        found
+    }
+
+    /// Adds a place to those whose crowding is asked for.
+    fn push(&self, place: &Place, points: &mut Points) {
+        let foot_m = self.shell.skin.rest_corners_m(place.triangle as usize).map(|p| p.as_dvec3());
+        let root_m = foot_m[0] * place.b.x + foot_m[1] * place.b.y + foot_m[2] * place.b.z;
+        let normals = self.rest_normals.as_deref().unwrap_or(self.normals);
+        let normal = self.vector(normals, place).normalize_or(DVec3::Y);
+        let clump = self.scalar(&self.shell.fields.clump, place);
+        points.push(root_m.as_vec3(), normal.as_vec3(), clump as f32, place.t as f32);
+    }
+
+    /// What undercoat blocks per length of a ray where it is as dense as in the mean, and what guard hair does, 1/m.
+    fn uncrowded(&self, spot: &Spot, direction: DVec3, counted: Counted) -> [f64; 2] {
+        let Spot { place, up_m, volume_m3 } = spot;
+        let height_m = up_m.length();
+        let cosine = up_m.dot(direction) / height_m;
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+        let standing =
+            self.scalar(&self.shell.fields.density, place) * self.twice_area_m2[place.triangle as usize] / volume_m3;
+        let of = |kind: &Option<Kind>| {
+            let blocked =
+                kind.as_ref().map_or(0.0, |kind| kind.per_m2 * kind.extinction(place.t, height_m, sine, cosine));
+            let blocked = blocked * standing;
+            if blocked.is_finite() { blocked } else { 0.0 }
+        };
+        [of(&self.undercoat), if counted == Counted::Both { of(&self.guard) } else { 0.0 }]
     }
 
     /// Where a ray is in slabs that hold what is counted, between two distances.
@@ -144,6 +197,7 @@ impl<'a> Medium<'a> {
         spans: &[Span],
         [from_m, to_m]: [f64; 2],
         counted: Counted,
+        tolerance: f64,
         mut visit: impl FnMut([f64; 2], f64) -> bool,
     ) {
         let mut at_m = from_m;
@@ -158,15 +212,16 @@ impl<'a> Medium<'a> {
             let parts = wanted.ceil().clamp(1.0, 64.0);
             let step = (end_m - at_m) / parts;
             if spans.iter().any(|span| here(&span)) {
-                let mut extinction = |at_m: f64| -> f64 {
-                    spans.iter().filter(here).map(|span| self.extinction_at(ray, span, at_m, counted)).sum()
-                };
                 for part in 0..parts as usize {
                     let begin = at_m + step * part as f64;
-                    let depth = if detailed {
-                        integrate(begin, begin + step, TOLERANCE, &mut extinction)
+                    let depth = if detailed && step > SHORT * self.detail_m {
+                        integrate(begin, begin + step, tolerance, &mut |at_m| {
+                            self.extinctions(spans.iter().filter(here), ray.direction, at_m, counted)
+                        })
                     } else {
-                        gauss(begin, begin + step, &mut extinction)
+                        gauss(begin, begin + step, |at_m| {
+                            self.extinctions(spans.iter().filter(here), ray.direction, at_m, counted)
+                        })
                     };
                     if !visit([begin, begin + step], depth) {
                         return;
@@ -175,12 +230,6 @@ impl<'a> Medium<'a> {
             }
             at_m = end_m;
         }
-    }
-
-    /// Blocked share per length where a ray is in a span, 1/m.
-    pub fn extinction_at(&self, ray: &Ray, span: &Span, at_m: f64, counted: Counted) -> f64 {
-        let places = self.slabs.places(span.slab, ray.at(at_m));
-        places.map(|place| self.extinction(&place, ray.direction, counted)).sum()
     }
 
     /// Optical depth of hair along a ray from `from_m` up to `to_m`, or as much of it as passes `enough`.
@@ -195,9 +244,9 @@ impl<'a> Medium<'a> {
             if at_m >= to_m {
                 break;
             }
-            let end_m = (at_m + 2.0 * self.stride_m()).min(to_m);
+            let end_m = (at_m + 4.0 * self.stride_m()).min(to_m);
             self.spans(ray, at_m, end_m, counted, &mut spans);
-            self.pieces(ray, &spans, [at_m, end_m], counted, |_, depth| {
+            self.pieces(ray, &spans, [at_m, end_m], counted, ROUGHLY, |_, depth| {
                 sum += depth;
                 sum < enough
             });
@@ -211,9 +260,10 @@ impl<'a> Medium<'a> {
         0.25 * f64::from(self.shell.undercoat.height_m)
     }
 
-    /// The place that a ray is at, in a span that holds it: the densest where a prism folds.
-    pub fn place(&self, ray: &Ray, span: &Span, at_m: f64) -> Option<Place> {
-        let at = |place: &Place| self.extinction(place, ray.direction, Counted::Undercoat);
-        self.slabs.places(span.slab, ray.at(at_m)).max_by(|a, b| at(a).total_cmp(&at(b)))
+    /// The place that a ray is at, in spans that hold it: the densest where prisms fold.
+    pub fn place<'s>(&self, spans: impl Iterator<Item = &'s Span>, direction: DVec3, at_m: f64) -> Option<Place> {
+        let dense = |spot: &Spot| self.uncrowded(spot, direction, Counted::Undercoat)[0];
+        let densest = spans.flat_map(|span| span.sight.spots(at_m)).max_by(|a, b| dense(a).total_cmp(&dense(b)));
+        densest.map(|spot| spot.place)
     }
 }

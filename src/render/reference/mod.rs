@@ -1,12 +1,16 @@
 //! The renderer's yardstick: f64, by another algorithm, slow and plain (`docs/steps/reference.md`).
 //!
-//! Many rays per pixel; along each, a hierarchy of hairs and one of prisms are asked for all that lies there, optical depths
-//! are integrated until two rules agree, and one of the things met is chosen in proportion to how much of it is seen. What
-//! it shares with the renderer is the model: fields, crowding, and the shading formulas.
+//! Some lines per pixel, each cut where hairs begin and cease to be seen; along a ray through each part, all that lies there is
+//! put together in exact order, optical depths integrated until two rules agree. What it shares with the renderer is the
+//! model: fields, crowding, and the shading formulas.
 
+pub mod along;
 pub mod bvh;
+pub mod cone;
+pub mod crowd;
 pub mod guard;
 pub mod kind;
+pub mod line;
 pub mod medium;
 pub mod quadrature;
 pub mod shade;
@@ -22,42 +26,45 @@ use crate::error::Result;
 use crate::fur::undercoat::Pattern;
 use crate::math::DVec3;
 use crate::math::hash::{combine, unit_f64};
-use bvh::Ray;
 use guard::Guard;
+use line::Line;
 use medium::Medium;
 use rayon::prelude::*;
-use shade::{Look, Shader, Shadow};
+use shade::{Look, Shader};
 use skin::Skin;
-use trace::{Met, Scratch, Tracer};
+use trace::{Scratch, Seen, Tracer};
 
 /// How much work a reference is worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Pixels per row and rows.
     pub size: [usize; 2],
-    /// Most rays per pixel, at least 1.
-    pub samples: usize,
-    /// Standard error of a pixel's lightness (CIE L*, 0 to 100) from which more rays are not worth it; 0 for the same count
+    /// Lines per pixel, at least 1.
+    pub lines: usize,
+    /// Standard error of a pixel's lightness (CIE L*, 0 to 100) above which it is given more lines; infinite for the same count
     /// everywhere.
     pub lightness_error: f64,
-    /// Decides where in the pixels rays pass.
+    /// Decides where in the pixels lines lie.
     pub seed: u64,
     /// Pattern of the undercoat's density.
     pub pattern: Option<Pattern>,
 }
 
-/// Most rays per pixel.
-pub const SAMPLES: u32 = 4096;
+/// Lines per pixel, at first.
+pub const LINES: u32 = 8;
 
-/// Standard error of lightness that a pixel is given rays for.
-const LIGHTNESS_ERROR: f64 = 0.5;
+/// Standard error of lightness above which a pixel is given more.
+const LIGHTNESS_ERROR: f64 = 0.3;
+
+/// Times as many as at first that it is given at most.
+const MOST: f64 = 4.0;
 
 impl Settings {
-    /// Of a picture with the renderer's own pattern, as many rays as its pixels need.
+    /// Of a picture with the renderer's own pattern.
     pub fn new(size: [usize; 2]) -> Self {
         Self {
             size,
-            samples: SAMPLES as usize,
+            lines: LINES as usize,
             lightness_error: LIGHTNESS_ERROR,
             seed: 0,
             pattern: Some(Pattern::default()),
@@ -65,14 +72,9 @@ impl Settings {
     }
 }
 
-/// Rays that tell how many more a pixel needs; they are not part of the picture, so that choosing by them adds no bias.
-const PILOT: usize = 24;
-
-/// Work of following a shadow to the light, in rays from the eye.
-const FOLLOWING: f64 = 3.0;
-
-/// Least share of rays whose shadow is followed.
-const LEAST_SHARE: f64 = 1.0 / 32.0;
+/// What takes less than this share of a line is shaded as seldom as it takes less, and then counts for this share: guard hair
+/// and skin, and undercoat, whose shadows are not kept.
+const LEAST: [f64; 2] = [2e-3, 0.03];
 
 /// Renders a picture: what [`super::picture::draw`] should have drawn.
 ///
@@ -85,87 +87,96 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
     let skin = Skin::new(pelt.skin);
     let guard = pelt.guard.map(|(strands, _)| Guard::new(strands, pelt.skin));
     let medium = Medium::new(pelt, &normals, settings.pattern);
-    let scene = Reference {
-        pelt,
-        tracer: Tracer { skin: &skin, guard: guard.as_ref(), medium: medium.as_ref() },
-        shader: Shader::new(pelt, lighting, medium.as_ref(), &skin, &normals)?,
-        lens: Lens::new(camera, origin_m, settings.size),
-        settings,
-    };
+    let tracer = Tracer { skin: &skin, guard: guard.as_ref(), medium: medium.as_ref() };
+    let shader = Shader::new(pelt, lighting, &tracer, &normals)?;
+    let scene = Reference { tracer, shader, lens: Lens::new(camera, origin_m, settings.size) };
     let [width, height] = settings.size;
-    let most = settings.samples.max(1);
-    let pixels = if settings.lightness_error <= 0.0 || most <= PILOT {
-        scene.pixels(|at, key, scratch| scene.rays(at, key, most, 1.0, scratch))
-    } else {
-        let pilots: Vec<[f64; 2]> = scene
-            .pixels(|at, key, scratch| scene.rays(at, combine(key, 1), PILOT, 1.0, scratch).variances_of_lightness());
-        scene.pixels(|at, key, scratch| {
-            let (count, share) = scene.wanted(around(at, settings.size).map(|i| pilots[i]));
-            scene.rays(at, key, count, share, scratch)
-        })
+    let all = |key: u64, lines: &(dyn Fn(usize) -> usize + Sync)| -> Vec<Sum> {
+        let pixel = |scratch: &mut Scratch, i: usize| {
+            scene.pixel([i % width, i / width], combine(key, i as u64), lines(i), scratch)
+        };
+        (0..width * height).into_par_iter().with_max_len(64).map_init(Scratch::default, pixel).collect()
     };
+    let mut sums = all(settings.seed, &|_| settings.lines.max(1));
+    // As many lines more as the pixels around a pixel need: chosen without a look at its own, so that no bias is added.
+    let errors: Vec<f64> = sums.iter().map(Sum::lightness_error).collect();
+    let more = all(combine(settings.seed, 1), &|i| {
+        let around = around([i % width, i / width], settings.size).filter(|&j| j != i);
+        let error = around.map(|j| errors[j]).fold(0.0, f64::max);
+        let wanted = settings.lines as f64 * (error / settings.lightness_error.max(1e-6) - 1.0);
+        if settings.lines >= 2 { wanted.clamp(0.0, MOST * settings.lines as f64).round() as usize } else { 0 }
+    });
+    sums.iter_mut().zip(&more).for_each(|(sum, more)| sum.join(more));
     let mut film = Film::new(width, height);
-    for (i, sum) in pixels.into_iter().enumerate() {
+    for (i, sum) in sums.into_iter().enumerate() {
         sum.into_film(&mut film, i);
     }
     Ok(film)
 }
 
 struct Reference<'a> {
-    pelt: &'a Pelt<'a>,
     tracer: Tracer<'a>,
     shader: Shader<'a>,
     lens: Lens,
-    settings: &'a Settings,
 }
 
 impl Reference<'_> {
-    /// What `each` makes of every pixel and its key, rows from the top.
-    fn pixels<T: Send>(&self, each: impl Fn([usize; 2], u64, &mut Scratch) -> T + Sync) -> Vec<T> {
-        let [width, height] = self.settings.size;
-        let pixel = |scratch: &mut Scratch, i: usize| {
-            each([i % width, i / width], combine(self.settings.seed, i as u64), scratch)
-        };
-        (0..width * height).into_par_iter().with_max_len(64).map_init(Scratch::default, pixel).collect()
-    }
-
-    /// How many rays a pixel needs, and the share of them whose shadow is to be followed, by the largest of some variances of
-    /// lightness: where hair is sparse, a pilot of one pixel alone may have met none.
-    fn wanted(&self, variances: impl Iterator<Item = [f64; 2]>) -> (usize, f64) {
-        let Settings { samples, lightness_error, .. } = *self.settings;
-        let [quick, rest] = variances.fold([0.0_f64; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
-        // The share that makes least work of a given error, where following a shadow takes `FOLLOWING` times a ray's work.
-        let share = (rest / (FOLLOWING * quick).max(1e-12)).sqrt().clamp(LEAST_SHARE, 1.0);
-        let count = (quick + rest / share) / (lightness_error * lightness_error);
-        ((count.ceil() as usize).clamp(PILOT, samples), share)
-    }
-
-    /// Sums up `count` rays, of which `share` have their shadow followed.
-    fn rays(&self, [x, y]: [usize; 2], key: u64, count: usize, share: f64, scratch: &mut Scratch) -> Sum {
-        let mut sum = Sum::default();
-        for sample in 0..count as u64 {
-            let [u, v, chosen] = evenly(key, sample);
-            let ray = self.lens.ray(x as f64 + u, y as f64 + v);
-            sum.count += 1.0;
-            let followed = ((sample + 1) as f64 * share).floor() > (sample as f64 * share).floor();
-            sum.followed += f64::from(u8::from(followed));
-            let Some(met) = self.tracer.meet(&ray, chosen, scratch) else { continue };
-            let look = self.look(&met, ray.direction, Shadow::Mean);
-            sum.add(&met, &look);
-            if followed {
-                sum.correct(look.radiance, self.look(&met, ray.direction, Shadow::Followed).radiance);
-            }
+    /// Looks at all lines of a pixel.
+    fn pixel(&self, [x, y]: [usize; 2], key: u64, count: usize, scratch: &mut Scratch) -> Sum {
+        if count == 0 {
+            return Sum::default();
+        }
+        let corner = [x as f64, y as f64];
+        let column = self.tracer.lies_across(&self.lens.row(corner, 0.5), &self.lens.column(corner, 0.5), scratch);
+        let mut picks = [0_usize, 1]
+            .map(|kind| Pick { least: LEAST[kind], passed: LEAST[kind] * unit_f64(combine(key, !(kind as u64))) });
+        let mut sum = Sum { lines: count as f64, ..Sum::default() };
+        let mut before = None;
+        for i in 0..count {
+            let key = combine(key, i as u64);
+            let at = (i as f64 + unit_f64(key)) / count as f64;
+            let line = if column { self.lens.column(corner, at) } else { self.lens.row(corner, at) };
+            let depth_m = self.tracer.line(&line, combine(key, 1), scratch, |seen, ray, share| {
+                sum.cover(seen, share);
+                let kind = usize::from(matches!(seen, Seen::Undercoat(_)));
+                let weight = picks[kind].weight(share);
+                if weight > 0.0 {
+                    sum.add(&self.look(seen, ray.direction), weight);
+                }
+            });
+            sum.depth_m += depth_m;
+            sum.compare(&mut before);
         }
         sum
     }
 
-    fn look(&self, met: &Met, direction: DVec3, shadow: Shadow) -> Look {
-        match (met, self.pelt.guard, self.tracer.guard) {
-            (Met::Guard(c), Some((strands, _)), Some(g)) => self.shader.guard(strands, g, c, direction, shadow),
-            (Met::Undercoat(_, place), _, _) => self.shader.undercoat(place, direction, shadow),
-            (Met::Skin(_, place), _, _) => self.shader.skin(place, direction, shadow),
-            _ => Look::default(),
+    fn look(&self, seen: &Seen, direction: DVec3) -> Look {
+        match seen {
+            Seen::Guard { strand, knot } => self.shader.guard(*strand, *knot, direction),
+            Seen::Undercoat(place) => self.shader.undercoat(place, direction),
+            Seen::Skin(place) => self.shader.skin(place, direction),
         }
+    }
+}
+
+/// Chooses evenly among small shares: whenever their sum passes a multiple of the least.
+struct Pick {
+    least: f64,
+    passed: f64,
+}
+
+impl Pick {
+    /// What a share counts for: it is the share in the mean, and 0 or no less than the least.
+    fn weight(&mut self, share: f64) -> f64 {
+        if share >= self.least {
+            return share;
+        }
+        self.passed += share;
+        if self.passed < self.least {
+            return 0.0;
+        }
+        self.passed -= self.least;
+        self.least
     }
 }
 
@@ -173,13 +184,6 @@ impl Reference<'_> {
 fn around([x, y]: [usize; 2], [width, height]: [usize; 2]) -> impl Iterator<Item = usize> {
     let near = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
     near(y, height).flat_map(move |y| near(x, width).map(move |x| y * width + x))
-}
-
-/// Three numbers in [0, 1): point `index` of Roberts' sequence (2018) in three dimensions, moved by what `key` gives.
-fn evenly(key: u64, index: u64) -> [f64; 3] {
-    // 2⁶⁴ times the first three powers of 1/g, g⁴ = g + 1.
-    const STEP: [u64; 3] = [0xD1B5_4A32_D192_ED03, 0xABC9_8388_FB8F_AC02, 0x8CB9_2BA7_2F3D_8DD7];
-    [0, 1, 2].map(|i| unit_f64(index.wrapping_mul(STEP[i]).wrapping_add(combine(key, 16 + i as u64))))
 }
 
 /// A pinhole camera in f64.
@@ -198,31 +202,21 @@ impl Lens {
         Self { eye_m: DVec3::from(camera.eye) - origin_m, axes: [right, up, -back], middle, focal_px }
     }
 
-    fn ray(&self, x: f64, y: f64) -> Ray {
+    fn direction(&self, x: f64, y: f64) -> DVec3 {
         let across = (x - self.middle[0]) / self.focal_px;
         let down = (y - self.middle[1]) / self.focal_px;
-        let direction = self.axes[0] * across - self.axes[1] * down + self.axes[2];
-        Ray::new(self.eye_m, direction.normalize())
+        self.axes[0] * across - self.axes[1] * down + self.axes[2]
     }
-}
 
-/// Sums over a pixel's rays.
-#[derive(Default)]
-struct Sum {
-    count: f64,
-    /// With the shadow in the mean.
-    light: DVec3,
-    luminance_squared: f64,
-    /// Rays whose shadow was followed too.
-    followed: f64,
-    /// What that changed.
-    change: DVec3,
-    change_squared: f64,
-    look: Look,
-    depth_m: f64,
-    guard: f64,
-    undercoat: f64,
-    skin: f64,
+    /// A row of the pixel with this corner.
+    fn row(&self, [x, y]: [f64; 2], at: f64) -> Line {
+        Line { eye_m: self.eye_m, base: self.direction(x, y + at), step: self.axes[0] / self.focal_px }
+    }
+
+    /// A column of it.
+    fn column(&self, [x, y]: [f64; 2], at: f64) -> Line {
+        Line { eye_m: self.eye_m, base: self.direction(x + at, y), step: -self.axes[1] / self.focal_px }
+    }
 }
 
 /// Luminance of linear sRGB primaries (Rec. 709).
@@ -230,58 +224,76 @@ fn luminance(colour: DVec3) -> f64 {
     colour.dot(DVec3::new(0.2126, 0.7152, 0.0722))
 }
 
+/// Sums over a pixel's lines.
+#[derive(Default)]
+struct Sum {
+    lines: f64,
+    /// Σ of the squared differences of luminance between a line and the one before.
+    unlike: f64,
+    look: Look,
+    depth_m: f64,
+    guard: f64,
+    undercoat: f64,
+    skin: f64,
+}
+
 impl Sum {
-    fn add(&mut self, met: &Met, look: &Look) {
-        self.light += look.radiance;
-        self.luminance_squared += luminance(look.radiance) * luminance(look.radiance);
-        self.look.albedo += look.albedo;
-        self.look.tangent += look.tangent;
-        self.look.normal += look.normal;
-        let (layer, at_m) = match met {
-            Met::Guard(crossing) => (&mut self.guard, crossing.enter_m),
-            Met::Undercoat(at_m, _) => (&mut self.undercoat, *at_m),
-            Met::Skin(at_m, _) => (&mut self.skin, *at_m),
-        };
-        *layer += 1.0;
-        self.depth_m += at_m;
+    fn add(&mut self, look: &Look, share: f64) {
+        self.look.radiance += look.radiance * share;
+        self.look.albedo += look.albedo * share;
+        self.look.tangent += look.tangent * share;
+        self.look.normal += look.normal * share;
     }
 
-    /// Adds what following the shadow changes of a ray's radiance.
-    fn correct(&mut self, quick: DVec3, followed: DVec3) {
-        let change = followed - quick;
-        self.change += change;
-        self.change_squared += luminance(change) * luminance(change);
+    fn cover(&mut self, seen: &Seen, share: f64) {
+        *match seen {
+            Seen::Guard { .. } => &mut self.guard,
+            Seen::Undercoat(_) => &mut self.undercoat,
+            Seen::Skin(_) => &mut self.skin,
+        } += share;
     }
 
-    /// Mean radiance: expected is that with shadows followed, whatever the quick ones are.
-    fn radiance(&self) -> DVec3 {
-        (self.light / self.count + self.change / self.followed.max(1.0)).max(DVec3::ZERO)
+    /// Takes note of how unlike the last line is to the one before, whose sum this was.
+    fn compare(&mut self, before: &mut Option<[f64; 2]>) {
+        let sum = luminance(self.look.radiance);
+        let line = sum - before.map_or(0.0, |[sum, _]| sum);
+        if let Some([_, last]) = *before {
+            self.unlike += (line - last) * (line - last);
+        }
+        *before = Some([sum, line]);
     }
 
-    /// Variances of one ray's part in the pixel's lightness: with its shadow in the mean, and of what following it changes.
-    /// L* goes with the cube root of luminance.
-    fn variances_of_lightness(&self) -> [f64; 2] {
-        let slope = 116.0 / 3.0 * libm::pow(luminance(self.radiance()).clamp(0.0, 1.0) + 0.01, -2.0 / 3.0);
-        let variance = |sum: DVec3, squared: f64, count: f64| {
-            let mean = luminance(sum) / count;
-            (squared / count - mean * mean).max(0.0) * count / (count - 1.0) * slope * slope
-        };
-        [
-            variance(self.light, self.luminance_squared, self.count),
-            variance(self.change, self.change_squared, self.followed),
-        ]
+    /// Standard error of the pixel's lightness (CIE L*, 0 to 100), which goes with the cube root of luminance.
+    fn lightness_error(&self) -> f64 {
+        let count = self.lines.max(2.0);
+        let slope = 116.0 / 3.0 * libm::pow(luminance(self.look.radiance) / count + 1e-3, -2.0 / 3.0);
+        (0.5 * self.unlike / (count - 1.0) / count).sqrt() * slope
+    }
+
+    /// Adds other lines of the pixel.
+    fn join(&mut self, other: &Self) {
+        self.lines += other.lines;
+        self.look.radiance += other.look.radiance;
+        self.look.albedo += other.look.albedo;
+        self.look.tangent += other.look.tangent;
+        self.look.normal += other.look.normal;
+        self.depth_m += other.depth_m;
+        self.guard += other.guard;
+        self.undercoat += other.undercoat;
+        self.skin += other.skin;
     }
 
     fn into_film(self, film: &mut Film, i: usize) {
         let met = self.guard + self.undercoat + self.skin;
-        let mean = |v: DVec3| (v / self.count).as_vec3();
-        film.radiance[i] = self.radiance().as_vec3();
+        let part = 1.0 / self.lines.max(1.0);
+        let mean = |v: DVec3| (v * part).as_vec3();
+        film.radiance[i] = mean(self.look.radiance);
         film.albedo[i] = mean(self.look.albedo);
         film.tangent[i] = mean(self.look.tangent);
         film.normal[i] = mean(self.look.normal);
         film.depth_m[i] = if met > 0.0 { (self.depth_m / met) as f32 } else { 0.0 };
-        film.alpha[i] = (met / self.count) as f32;
-        film.guard[i] = (self.guard / self.count) as f32;
-        film.undercoat[i] = (self.undercoat / self.count) as f32;
+        film.alpha[i] = (met * part) as f32;
+        film.guard[i] = (self.guard * part) as f32;
+        film.undercoat[i] = (self.undercoat * part) as f32;
     }
 }

@@ -2,30 +2,29 @@
 //! key light's optical depth integrated anew for every point.
 
 use super::bvh::Ray;
-use super::guard::{Crossing, Guard};
+use super::guard::Guard;
 use super::medium::{Counted, Medium};
 use super::shell::Place;
 use super::skin::Skin;
+use super::trace::Tracer;
 use crate::data::strands::Strands;
 use crate::error::Result;
 use crate::math::{DVec3, Vec3};
-use crate::render::mean::MeanShadow;
 use crate::render::pelt::{Layer, Lighting, Pelt, sky_depth, slant_depth, terminator};
 use crate::shade::kajiya_kay::KajiyaKay;
 use crate::shade::lobes::Lobes;
 use crate::shade::{Angles, shadow_power};
 use std::f64::consts::FRAC_1_PI;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Optical depth beyond which no light is left.
-const DARK: f64 = 8.0;
+const DARK: f64 = 12.0;
 
-/// How the key light's shadow is found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shadow {
-    /// Integrated along the ray to the light.
-    Followed,
-    /// The renderer's, in the mean: quick, and close enough that the difference hardly varies.
-    Mean,
+/// Heights of a piece of guard hair from which its shadow is followed.
+const HEIGHTS_PER_PIECE: usize = 3;
+
+fn heights_of(strands: &Strands) -> usize {
+    (strands.points_per_strand - 1) * HEIGHTS_PER_PIECE + 1
 }
 
 /// What a point looks like.
@@ -56,7 +55,9 @@ pub struct Shader<'a> {
     pelt: &'a Pelt<'a>,
     lighting: &'a Lighting,
     medium: Option<&'a Medium<'a>>,
-    mean: Option<MeanShadow<'a>>,
+    guard: Option<&'a Guard<'a>>,
+    /// Optical depths towards the key light at heights of guard hairs, as bits of f32; NaN where not asked for yet.
+    shadows: Vec<AtomicU32>,
     skin: &'a Skin,
     lobes: Lobes<f64>,
     undercoat: KajiyaKay<f64>,
@@ -68,20 +69,17 @@ impl<'a> Shader<'a> {
     ///
     /// # Errors
     /// As [`Lobes::new`].
-    pub fn new(
-        pelt: &'a Pelt<'a>,
-        lighting: &'a Lighting,
-        medium: Option<&'a Medium<'a>>,
-        skin: &'a Skin,
-        normals: &'a [Vec3],
-    ) -> Result<Self> {
+    pub fn new(pelt: &'a Pelt<'a>, lighting: &'a Lighting, tracer: &Tracer<'a>, normals: &'a [Vec3]) -> Result<Self> {
         let hair = &pelt.hair;
+        let Tracer { skin, guard, medium } = *tracer;
+        let heights = guard.map_or(0, |guard| guard.strands().len() * heights_of(guard.strands()));
         Ok(Self {
             pelt,
             lighting,
             medium,
-            mean: MeanShadow::new(pelt, lighting.key.to_light),
             skin,
+            guard,
+            shadows: std::iter::repeat_with(|| AtomicU32::new(f32::NAN.to_bits())).take(heights).collect(),
             lobes: Lobes::new(&hair.guard)?,
             undercoat: KajiyaKay::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent),
             normals,
@@ -89,14 +87,14 @@ impl<'a> Shader<'a> {
     }
 
     /// Undercoat at a place, seen along `direction`.
-    pub fn undercoat(&self, place: &Place, direction: DVec3, shadow: Shadow) -> Look {
+    pub fn undercoat(&self, place: &Place, direction: DVec3) -> Look {
         let Some(medium) = self.medium else { return Look::default() };
         let fields = self.pelt.fields;
         let ramp = self.pelt.undercoat.map_or(Vec3::ONE, |fibre| fibre.profile.ramp_at(place.t as f32));
         let albedo = medium.vector(&fields.tint, place) * ramp.as_dvec3();
         let hair = medium.hair(place);
         let height_m = place.t * self.height_m(place);
-        let site = self.site(place, height_m, hair, shadow);
+        let site = self.site(place, height_m, hair, self.key_depth(place));
         let diffuse = albedo * self.pelt.hair.undercoat_diffuse;
         let scattered = |angles: Angles<f64>| {
             let (tinted, plain) = self.undercoat.scatter(angles);
@@ -107,36 +105,24 @@ impl<'a> Shader<'a> {
         Look { radiance, albedo, tangent: hair, normal: DVec3::ZERO }
     }
 
-    /// A guard hair where a ray enters it.
-    pub fn guard(
-        &self,
-        strands: &Strands,
-        guard: &Guard<'_>,
-        crossing: &Crossing,
-        direction: DVec3,
-        shadow: Shadow,
-    ) -> Look {
-        let strand = crossing.strand as usize;
-        let root = strands.roots[strand];
-        let [u, v] = root.barycentric.map(f64::from);
-        let foot = Place { triangle: root.triangle, b: DVec3::new(u, v, 1.0 - u - v), t: 0.0 };
-        let points = strands.points_of_m(strand);
+    /// A guard hair at a place along it, in its points.
+    pub fn guard(&self, strand: u32, knot: f64, direction: DVec3) -> Look {
+        let Some(guard) = self.guard else { return Look::default() };
+        let strands = guard.strands();
+        let foot = self.foot(strand);
+        let points = strands.points_of_m(strand as usize);
         let last = points.len() - 1;
-        let piece = (crossing.knot as usize).min(last - 1);
-        let along = crossing.knot - piece as f64;
+        let piece = (knot as usize).min(last - 1);
+        let along = knot - piece as f64;
         let point = |i: usize| points[i.min(last)].as_dvec3();
-        let fields = self.pelt.fields;
-        let normal = self.normal(&foot);
-        let lean = self.vector(&fields.lean, &foot).normalize_or(normal);
+        let lean = self.lean(&foot);
         // The hair's direction turns evenly from point to point.
         let at_knot = |i: usize| (point(i + 1) - point(i.saturating_sub(1))).normalize_or(lean);
         let tangent = at_knot(piece).lerp(at_knot(piece + 1), along).normalize_or(lean);
-        let at = point(piece).lerp(point(piece + 1), along);
-        let height_m = (at - point(0)).dot(normal) / lean.dot(normal).max(0.05);
-        // A hair is shadowed as the column over its root is at the same height.
-        let column = Place { t: (height_m / self.height_m(&foot)).max(0.0), ..foot };
-        let site = self.site(&column, height_m, lean, shadow);
-        let albedo = strands.tint[strand].as_dvec3() * strands.profile.ramp_at(guard.s(crossing) as f32).as_dvec3();
+        let height_m = self.height_over(&foot, lean, strand, knot);
+        let site = self.site(&foot, height_m, lean, self.hair_depth(strand, knot));
+        let albedo =
+            strands.tint[strand as usize].as_dvec3() * strands.profile.ramp_at(guard.s(knot) as f32).as_dvec3();
         let p = &self.pelt.hair.guard;
         let share = albedo * (p.tt.albedo + p.trt.albedo + p.diffuse);
         let scattered = |angles: Angles<f64>| {
@@ -148,16 +134,18 @@ impl<'a> Shader<'a> {
     }
 
     /// Skin at a place, seen along `direction`.
-    pub fn skin(&self, place: &Place, direction: DVec3, shadow: Shadow) -> Look {
+    pub fn skin(&self, place: &Place, direction: DVec3) -> Look {
         let outside = self.normal(place);
         let back = direction.dot(outside) > 0.0;
         let normal = if back { -outside } else { outside };
-        let fields = self.pelt.fields;
-        let lean = self.vector(&fields.lean, place).normalize_or(normal);
-        let albedo = self.vector(&fields.tint, place) * self.pelt.skin_factor.as_dvec3();
+        let lean = self.lean(place);
+        let albedo = self.vector(&self.pelt.fields.tint, place) * self.pelt.skin_factor.as_dvec3();
         // The back of a pelt is bare.
-        let site =
-            if back { Site { normal, lean, above: 0.0, key_depth: 0.0 } } else { self.site(place, 0.0, lean, shadow) };
+        let site = if back {
+            Site { normal, lean, above: 0.0, key_depth: 0.0 }
+        } else {
+            self.site(place, 0.0, lean, self.key_depth(place))
+        };
         let mut radiance = self.lighting.ambient.as_dvec3() * albedo * libm::exp(-f64::from(sky_depth(site.above)));
         for (i, light) in std::iter::once(&self.lighting.key).chain(&self.lighting.fill).enumerate() {
             let cosine = light.to_light.as_dvec3().dot(normal);
@@ -205,38 +193,82 @@ impl<'a> Shader<'a> {
         f64::from(slant_depth(site.above, to_light, site.normal.as_vec3(), site.lean.as_vec3()))
     }
 
-    /// What stands around hair at a place, `height_m` above the skin.
-    fn site(&self, place: &Place, height_m: f64, lean: DVec3, shadow: Shadow) -> Site {
+    /// What stands around hair over a place, `height_m` above the skin.
+    fn site(&self, place: &Place, height_m: f64, lean: DVec3, key_depth: f64) -> Site {
         let fields = self.pelt.fields;
         let (density, length) = (self.scalar(&fields.density, place) as f32, self.scalar(&fields.length, place) as f32);
         let above = |fibre| Layer::new(fibre, density, length).above(height_m as f32);
         let own = self.pelt.undercoat.map_or(0.0, above);
         let guard = self.pelt.guard.map_or(0.0, |(_, fibre)| above(fibre));
-        let normal = self.normal(place);
-        let to_light = self.lighting.key.to_light;
-        let lit = terminator(to_light, normal.as_vec3()) > 0.0;
-        let key_depth = match (lit, shadow, &self.mean) {
-            (false, ..) => 0.0,
-            (true, Shadow::Mean, Some(mean)) => {
-                f64::from(mean.depth(place.triangle, place.b.as_vec3(), place.t as f32).min(DARK as f32))
-            }
-            (true, ..) => self.key_depth(place),
-        };
-        Site { normal, lean, above: own + guard, key_depth }
+        Site { normal: self.normal(place), lean, above: own + guard, key_depth }
     }
 
     /// Optical depth of hair between a place and the key light, up to the first skin.
     fn key_depth(&self, place: &Place) -> f64 {
-        let Some(medium) = self.medium else { return 0.0 };
+        let to_light = self.lighting.key.to_light;
+        let lit = terminator(to_light, self.normal(place).as_vec3()) > 0.0;
+        let Some(medium) = self.medium.filter(|_| lit) else { return 0.0 };
         let from_m = 1e-7 * self.height_m(place);
-        let ray = Ray::new(medium.slabs.position_m(place), self.lighting.key.to_light.as_dvec3().normalize());
+        let ray = Ray::new(medium.slabs.position_m(place), to_light.as_dvec3().normalize());
         let to_m = self.skin.meet(&ray, from_m).map_or(f64::INFINITY, |(at_m, _)| at_m);
         medium.depth_along(&ray, from_m, to_m, Counted::Both, DARK)
     }
 
+    /// The same for a guard hair, which is shadowed as the column over its own root is: a cubic through four heights of it.
+    fn hair_depth(&self, strand: u32, knot: f64) -> f64 {
+        let Some(guard) = self.guard else { return 0.0 };
+        let heights = heights_of(guard.strands());
+        let at = knot * HEIGHTS_PER_PIECE as f64;
+        let first = (at as usize).saturating_sub(1).min(heights - 4);
+        let x = at - first as f64;
+        let depth = |i: usize| {
+            let cell = &self.shadows[strand as usize * heights + first + i];
+            let known = f32::from_bits(cell.load(Ordering::Relaxed));
+            if !known.is_nan() {
+                return f64::from(known);
+            }
+            let foot = self.foot(strand);
+            let knot = (first + i) as f64 / HEIGHTS_PER_PIECE as f64;
+            let height_m = self.height_over(&foot, self.lean(&foot), strand, knot);
+            let t = (height_m / self.height_m(&foot)).max(0.0);
+            // Whoever comes first finds the same.
+            let found = self.key_depth(&Place { t, ..foot }) as f32;
+            cell.store(found.to_bits(), Ordering::Relaxed);
+            f64::from(found)
+        };
+        let weights = [
+            -(x - 1.0) * (x - 2.0) * (x - 3.0) / 6.0,
+            x * (x - 2.0) * (x - 3.0) / 2.0,
+            -x * (x - 1.0) * (x - 3.0) / 2.0,
+            x * (x - 1.0) * (x - 2.0) / 6.0,
+        ];
+        (0..4).map(|i| weights[i] * depth(i)).sum::<f64>().max(0.0)
+    }
+
+    /// Where a guard hair grows.
+    fn foot(&self, strand: u32) -> Place {
+        let root = self.guard.map_or_else(Default::default, |guard| guard.strands().roots[strand as usize]);
+        let [u, v] = root.barycentric.map(f64::from);
+        Place { triangle: root.triangle, b: DVec3::new(u, v, 1.0 - u - v), t: 0.0 }
+    }
+
+    /// Height of a guard hair over its foot at a place along it, m along the lean.
+    fn height_over(&self, foot: &Place, lean: DVec3, strand: u32, knot: f64) -> f64 {
+        let Some(guard) = self.guard else { return 0.0 };
+        let points = guard.strands().points_of_m(strand as usize);
+        let piece = (knot as usize).min(points.len() - 2);
+        let at = points[piece].as_dvec3().lerp(points[piece + 1].as_dvec3(), knot - piece as f64);
+        let normal = self.normal(foot);
+        (at - points[0].as_dvec3()).dot(normal) / lean.dot(normal).max(0.05)
+    }
+
+    fn lean(&self, place: &Place) -> DVec3 {
+        self.vector(&self.pelt.fields.lean, place).normalize_or(self.normal(place))
+    }
+
     /// Height of the shell at a place, m along the lean.
     fn height_m(&self, place: &Place) -> f64 {
-        self.medium.map_or(1.0, |medium| medium.slabs.frame(place).0.length())
+        self.medium.map_or(1.0, |medium| medium.slabs.up_m(place).length())
     }
 
     fn normal(&self, place: &Place) -> DVec3 {

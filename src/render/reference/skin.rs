@@ -21,6 +21,12 @@ impl Skin {
         Self { corners_m, bvh: Bvh::new(&bounds) }
     }
 
+    /// The plane of a triangle.
+    pub fn plane(&self, triangle: u32) -> Plane {
+        let [a, b, c] = self.corners_m[triangle as usize];
+        Plane { point_m: a, normal: (b - a).cross(c - a) }
+    }
+
     /// The first triangle that a ray meets after `near_m`, from either side; the one with the lower index of equals.
     pub fn meet(&self, ray: &Ray, near_m: f64) -> Option<(f64, Place)> {
         let mut best: Option<(f64, Place)> = None;
@@ -34,6 +40,20 @@ impl Skin {
             at_m
         });
         best
+    }
+}
+
+/// The plane of a triangle of the skin.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane {
+    point_m: DVec3,
+    normal: DVec3,
+}
+
+impl Plane {
+    /// Where a ray meets it, m; NaN or infinite where it never does.
+    pub fn meet_m(&self, ray: &Ray) -> f64 {
+        (self.point_m - ray.origin_m).dot(self.normal) / ray.direction.dot(self.normal)
     }
 }
 

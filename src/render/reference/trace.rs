@@ -1,28 +1,34 @@
-//! One ray: where what a uniform number chooses is met, hair and undercoat in exact order.
+//! One line of a pixel: what is seen on it, hair and undercoat in exact order.
+//!
+//! The line is cut where hairs begin and cease to be seen; each part is looked through at a random place of it, so that a cut
+//! too few adds noise and no bias. Undercoat and skin change slowly: a part of the line takes them from one random place.
 
+use super::along::{Along, View};
 use super::bvh::Ray;
-use super::guard::{Crossing, Guard};
-use super::medium::{Counted, Medium};
-use super::quadrature::gauss;
-use super::shell::{Place, Span};
+use super::guard::{Crossing, Guard, Strip};
+use super::line::Line;
+use super::medium::Medium;
+use super::shell::Place;
 use super::skin::Skin;
+use crate::math::hash::Stream;
 
-/// What a ray meets.
+/// Parts of a line that take undercoat and skin from one place each.
+const PARTS: usize = 2;
+
+/// What is seen.
 #[derive(Clone, Copy, Debug)]
-pub enum Met {
+pub enum Seen {
     /// A guard hair.
-    Guard(Crossing),
-    /// Undercoat, at a distance in m.
-    Undercoat(f64, Place),
-    /// Skin, at a distance in m.
-    Skin(f64, Place),
-}
-
-/// Lists that a thread keeps for their memory.
-#[derive(Debug, Default)]
-pub struct Scratch {
-    crossings: Vec<Crossing>,
-    spans: Vec<Span>,
+    Guard {
+        /// Which.
+        strand: u32,
+        /// Where along it, in its points.
+        knot: f64,
+    },
+    /// Undercoat.
+    Undercoat(Place),
+    /// Skin.
+    Skin(Place),
 }
 
 /// What rays may meet.
@@ -36,94 +42,174 @@ pub struct Tracer<'a> {
     pub medium: Option<&'a Medium<'a>>,
 }
 
-/// Halvings by which the place in undercoat is found: a 32nd of a clump pattern's detail.
-const HALVINGS: usize = 5;
+/// How much of a strip has been seen, and that times where along its hair.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tally {
+    share: f64,
+    knots: f64,
+}
+
+/// Lists that a thread keeps for their memory.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    strips: Vec<Strip>,
+    tallies: Vec<Tally>,
+    /// Strips of the part of the line that is looked at, nearest first.
+    active: Vec<u32>,
+    /// Hairs entered but not passed yet, farthest first, and those that are passed.
+    waiting: Vec<(Crossing, u32)>,
+    passed: Vec<Crossing>,
+}
+
+/// Pieces of hair that tell how the hair of a pixel lies.
+const TELLING: usize = 16;
 
 impl Tracer<'_> {
-    /// Follows a ray until the share of it that has been blocked passes `chosen` in [0, 1): what is met is then chosen in
-    /// proportion to how much of it is seen.
-    pub fn meet(&self, ray: &Ray, chosen: f64, scratch: &mut Scratch) -> Option<Met> {
-        let left = 1.0 - chosen;
-        let skin = self.skin.meet(ray, 0.0);
-        let far_m = skin.map_or(f64::INFINITY, |(at_m, _)| at_m);
-        let mut through = 1.0_f64;
-        let mut at_m = 0.0_f64;
-        // Boxes are looked for only where the last stretch was empty.
-        let mut empty = true;
-        loop {
-            let Scratch { crossings, spans } = &mut *scratch;
-            if empty {
-                let hair_m = self.guard.map_or(f64::INFINITY, |guard| guard.first(ray, at_m));
-                let undercoat_m = self.medium.map_or(f64::INFINITY, |medium| medium.slabs.first(ray, at_m));
-                at_m = at_m.max(hair_m.min(undercoat_m));
-            }
-            if at_m >= far_m || at_m == f64::INFINITY {
-                break;
-            }
-            let stride_m = self.medium.map_or(0.01, Medium::stride_m);
-            let end_m = (at_m + stride_m).min(far_m);
-            match self.guard {
-                Some(guard) => guard.crossings(ray, at_m, end_m, crossings),
-                None => crossings.clear(),
-            }
-            match self.medium {
-                Some(medium) => medium.spans(ray, at_m, end_m, Counted::Undercoat, spans),
-                None => spans.clear(),
-            }
-            empty = crossings.is_empty() && spans.is_empty();
-            for next in crossings.iter().map(Some).chain([None]) {
-                let to_m = next.map_or(end_m, |crossing| crossing.enter_m);
-                if let Some(met) = self.in_undercoat(ray, spans, [at_m, to_m], left, &mut through) {
-                    return Some(met);
-                }
-                at_m = to_m;
-                if let (Some(crossing), Some(guard)) = (next, self.guard) {
-                    through *= 1.0 - guard.opacity(crossing);
-                    if through < left {
-                        return Some(Met::Guard(*crossing));
-                    }
-                }
+    /// Whether hair lies rather along a row than along a column, so that columns cut it shorter.
+    pub fn lies_across(&self, row: &Line, column: &Line, scratch: &mut Scratch) -> bool {
+        let Some(guard) = self.guard else { return false };
+        let mut ways = [0.0_f64; 2];
+        for line in [row, column] {
+            guard.strips(line, f64::INFINITY, &mut scratch.strips);
+            scratch.strips.sort_by(|a, b| a.near_m.total_cmp(&b.near_m));
+            for strip in scratch.strips.iter().take(TELLING) {
+                let way = guard.way(strip);
+                ways[0] += way.dot(row.step).abs();
+                ways[1] += way.dot(column.step).abs();
             }
         }
-        skin.map(|(at_m, place)| Met::Skin(at_m, place))
+        ways[0] > ways[1]
     }
 
-    /// Lowers `through` by the undercoat between two distances; where it passes `left`, says what is met.
-    fn in_undercoat(
-        &self,
-        ray: &Ray,
-        spans: &[Span],
-        [from_m, to_m]: [f64; 2],
-        left: f64,
-        through: &mut f64,
-    ) -> Option<Met> {
-        let medium = self.medium?;
-        let mut found = None;
-        medium.pieces(ray, spans, [from_m, to_m], Counted::Undercoat, |piece, depth| {
-            let after = *through * libm::exp(-depth);
-            if after < left {
-                found = Some((piece, libm::log(*through / left)));
+    /// Calls `visit` with all that is seen on a line, the ray that it is seen along and which share of the line it takes; gives
+    /// Σ share × distance.
+    pub fn line(&self, line: &Line, key: u64, scratch: &mut Scratch, mut visit: impl FnMut(&Seen, &Ray, f64)) -> f64 {
+        let mut random = Stream::new(key);
+        let mut unit = || f64::from(random.unit());
+        let mut parts: [Along; PARTS] =
+            std::array::from_fn(|i| Along::new(line.ray((i as f64 + unit()) / PARTS as f64), self.skin));
+        scratch.strips.clear();
+        scratch.active.clear();
+        if let Some(guard) = self.guard {
+            let far_m = parts.iter().map(Along::far_m).fold(0.0, f64::max);
+            guard.strips(line, far_m * 1.001, &mut scratch.strips);
+        }
+        scratch.tallies.clear();
+        scratch.tallies.resize(scratch.strips.len(), Tally::default());
+        let (mut at, mut next, mut opaque_m, mut depth_m) = (0.0, 0, f64::INFINITY, 0.0);
+        for (i, part) in parts.iter_mut().enumerate() {
+            let end = (i + 1) as f64 / PARTS as f64;
+            while at < end {
+                let Scratch { strips, active, .. } = &mut *scratch;
+                active.retain(|&strip| strips[strip as usize].x[1] > at);
+                // Hairs behind all that was seen last cut nothing.
+                let counts = |strip: &Strip| strip.near_m < opaque_m;
+                let mut to = end;
+                for &strip in active.iter() {
+                    let strip = &strips[strip as usize];
+                    if strip.x[1] < to && counts(strip) {
+                        to = strip.x[1];
+                    }
+                }
+                while let Some(strip) = strips.get(next).filter(|strip| strip.x[0] < to) {
+                    if strip.x[0] > at && counts(strip) {
+                        to = strip.x[0];
+                        break;
+                    }
+                    if strip.x[1] > at {
+                        if strip.x[1] < to && counts(strip) {
+                            to = strip.x[1];
+                        }
+                        let place = active.partition_point(|&a| strips[a as usize].near_m <= strip.near_m);
+                        active.insert(place, next as u32);
+                    }
+                    next += 1;
+                }
+                let ray = line.ray(at + (to - at) * unit());
+                let view = self.look(&ray, part, to - at, scratch);
+                opaque_m = if view.left > 0.0 { f64::INFINITY } else { view.at_m + part.farther_m(&ray) };
+                depth_m += view.depth_m;
+                at = to;
             }
-            *through = after;
-            found.is_none()
-        });
-        let ([mut low, mut high], mut depth) = found?;
-        let here = |at_m: f64| spans.iter().filter(move |span| span.from_m <= at_m && span.to_m >= at_m);
-        let at = |at_m: f64| -> f64 {
-            here(at_m).map(|span| medium.extinction_at(ray, span, at_m, Counted::Undercoat)).sum()
-        };
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            let before = gauss(low, middle, at);
-            if before >= depth {
-                high = middle;
-            } else {
-                (low, depth) = (middle, depth - before);
+            // Hairs in order of x.
+            let seen = scratch.tallies.iter_mut().zip(&scratch.strips).filter(|(tally, _)| tally.share > 0.0);
+            for (tally, strip) in seen {
+                let knot = tally.knots / tally.share;
+                visit(&Seen::Guard { strand: strip.strand, knot }, &part.ray, tally.share);
+                *tally = Tally::default();
+            }
+            for piece in part.pieces.iter().filter(|piece| piece.seen > 0.0) {
+                visit(&Seen::Undercoat(piece.place), &part.ray, piece.seen);
+            }
+            if let Some((_, place)) = part.skin.filter(|_| part.skin_seen > 0.0) {
+                visit(&Seen::Skin(place), &part.ray, part.skin_seen);
             }
         }
-        let at_m = 0.5 * (low + high);
-        let dense = |span: &&Span| medium.extinction_at(ray, span, at_m, Counted::Undercoat);
-        let span = here(at_m).max_by(|a, b| dense(a).total_cmp(&dense(b)))?;
-        medium.place(ray, span, at_m).map(|place| Met::Undercoat(at_m, place))
+        depth_m
+    }
+
+    /// Looks along a ray through the active strips and a part's undercoat, and adds up what is seen.
+    fn look(&self, ray: &Ray, part: &mut Along, width: f64, scratch: &mut Scratch) -> View {
+        let mut view = View::new(width);
+        let Scratch { strips, tallies, active, waiting, passed } = scratch;
+        waiting.clear();
+        passed.clear();
+        // Skin and undercoat slant as the skin does.
+        let farther_m = part.farther_m(ray);
+        let far_m = part.far_m() + farther_m;
+        if let Some(guard) = self.guard {
+            let mut pass = |view: &mut View, passed: &mut Vec<Crossing>, (crossing, strip): (Crossing, u32)| {
+                part.see(self.medium, view, crossing.enter_m - farther_m);
+                let share = view.take(guard.opacity(crossing.knot));
+                let tally = &mut tallies[strip as usize];
+                tally.share += share;
+                tally.knots += share * crossing.knot;
+                view.depth_m += share * crossing.enter_m;
+                passed.push(crossing);
+            };
+            for &index in active.iter() {
+                let strip = &strips[index as usize];
+                while waiting.last().is_some_and(|(first, _)| first.enter_m <= strip.near_m) && view.left > 0.0 {
+                    waiting.pop().into_iter().for_each(|first| pass(&mut view, passed, first));
+                }
+                if view.left <= 0.0 {
+                    break;
+                }
+                let Some(crossing) = guard.cross(ray, strip.strand, strip.piece) else { continue };
+                if crossing.enter_m >= far_m {
+                    continue;
+                }
+                // Where two pieces meet, a ray may be in both: that is one entry into one hair.
+                let same = |other: &Crossing| {
+                    other.strand == crossing.strand
+                        && other.piece.abs_diff(crossing.piece) == 1
+                        && crossing.enter_m <= other.leave_m
+                        && other.enter_m <= crossing.leave_m
+                };
+                if passed.iter().any(same) {
+                    continue;
+                }
+                if let Some(other) = waiting.iter().position(|(other, _)| same(other)) {
+                    if waiting[other].0.enter_m <= crossing.enter_m {
+                        continue;
+                    }
+                    waiting.remove(other);
+                }
+                let key = |c: &Crossing| (c.enter_m, guard.id(c.strand));
+                let place = waiting.partition_point(|(other, _)| key(other) > key(&crossing));
+                waiting.insert(place, (crossing, index));
+            }
+            while view.left > 0.0 {
+                let Some(first) = waiting.pop() else { break };
+                pass(&mut view, passed, first);
+            }
+        }
+        part.see(self.medium, &mut view, f64::INFINITY);
+        if let Some((at_m, _)) = part.skin.filter(|_| view.left > 0.0) {
+            let share = view.take(1.0);
+            part.skin_seen += share;
+            view.depth_m += share * at_m;
+        }
+        view
     }
 }
