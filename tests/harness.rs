@@ -227,10 +227,10 @@ fn twins_tell_two_pixels_in_a_thousand() {
 }
 
 #[test]
-fn the_reference_sees_a_light_a_tenth_too_weak() {
+fn the_reference_sees_a_light_three_hundredths_too_weak() {
     let mut lighting = crate::pelts::studio();
-    lighting.key.irradiance *= 0.9;
-    lighting.ambient *= 0.9;
+    lighting.key.irradiance *= 0.97;
+    lighting.ambient *= 0.97;
     let difference = crate::oracle::against_reference(&lighting);
     assert_eq!(crate::oracle::fault(&difference), Some("bias"));
 }
