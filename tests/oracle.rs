@@ -135,7 +135,7 @@ fn a_line_sees_a_hair_where_its_rays_meet_it() {
     assert!(gap < 3e-5, "{gap} of a stretch");
 }
 
-/// Mean FLIP and difference of mean luminance between two seeds of the reference.
+/// How far two seeds of the reference are apart.
 fn between_seeds(lines: usize) -> Difference {
     let grown = thin();
     let [a, b] = [1, 2].map(|seed| by_reference([16, 16], &grown, &pelts::studio(), lines, seed));
@@ -146,5 +146,5 @@ fn between_seeds(lines: usize) -> Difference {
 fn more_lines_bring_two_seeds_closer() {
     let [few, more] = [1, 4].map(between_seeds);
     println!("FLIP {:.4} of a line, {:.4} of four; bias {:+.4} and {:+.4}", few.flip, more.flip, few.bias, more.bias);
-    assert!(more.flip < 0.75 * few.flip && more.bias.abs() < 0.005);
+    assert!(more.flip < 0.6 * few.flip);
 }
