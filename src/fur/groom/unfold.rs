@@ -45,7 +45,11 @@ pub fn unfold(mesh: &Mesh, normals: &[Vec3], height_m: f32, lean: &mut [Vec3], l
     }
     let skin = Skin { mesh, height_m, triangles, around };
     for round in 0..ROUNDS {
-        let reached = skin.reached(&skin.crossing(lean, length), 1 + round / ROUNDS_PER_RING);
+        let crossing = skin.crossing(lean, length);
+        if crossing.is_empty() {
+            break;
+        }
+        let reached = skin.reached(&crossing, 1 + round / ROUNDS_PER_RING);
         let average = |&v: &u32| {
             let (own, around) = (lean[v as usize], &skin.around[v as usize]);
             let mean = around.iter().map(|&near| lean[near as usize]).sum::<Vec3>() / around.len() as f32;
@@ -55,7 +59,11 @@ pub fn unfold(mesh: &Mesh, normals: &[Vec3], height_m: f32, lean: &mut [Vec3], l
         reached.iter().zip(averages).for_each(|(&v, average)| lean[v as usize] = average);
     }
     for _ in 0..MOST_SHORTENINGS {
-        skin.reached(&skin.crossing(lean, length), 0).iter().for_each(|&v| length[v as usize] *= SHORTER);
+        let crossing = skin.crossing(lean, length);
+        if crossing.is_empty() {
+            break;
+        }
+        skin.reached(&crossing, 0).iter().for_each(|&v| length[v as usize] *= SHORTER);
     }
     for (v, &class) in mesh.position_class.iter().enumerate() {
         (lean[v], length[v]) = (lean[class as usize], length[class as usize]);
