@@ -236,11 +236,13 @@ impl<'a> Volume<'a> {
     /// Subdivisions of the stored shadow of a triangle.
     pub fn shadow_subdivisions(&self, triangle: u32) -> u32 {
         let d = self.subdivisions(triangle);
+        let coarser = d.saturating_sub(self.resolution.shadow_coarser);
+        let splits_of = |details: f32| {
+            let coarsest_m = details * self.resolution.coarsest_details * self.shell.undercoat.detail_m();
+            splits(self.shell.skin.mean_edge_m(triangle as usize), coarsest_m)
+        };
         // Light comes in over open borders, and what it finds between clumps there is seen end on.
-        let details = if self.shell.neighbours.at_border(triangle) { 1.0 } else { 2.0 };
-        let coarsest_m = details * self.resolution.coarsest_details * self.shell.undercoat.detail_m();
-        let least = splits(self.shell.skin.mean_edge_m(triangle as usize), coarsest_m);
-        d.saturating_sub(self.resolution.shadow_coarser).max(least.min(d))
+        coarser.max(if self.shell.neighbours.at_border(triangle) { splits_of(0.5) } else { splits_of(2.0).min(d) })
     }
 
     /// The steps of `length_m` that begin at `from`.
