@@ -125,7 +125,7 @@ pub struct Render {
 enum Quality {
     /// One sample per pixel; thin hairs are fewer and wider
     Preview,
-    /// Four samples per pixel, shorter steps
+    /// Four samples per pixel, sixteen in small pictures, shorter steps
     Final,
     /// Another algorithm in f64, ray by ray: minutes to hours, to measure the others by
     Reference,

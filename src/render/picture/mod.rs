@@ -77,11 +77,12 @@ impl Settings {
         }
     }
 
-    /// Andersen et al. 2016's four samples per pixel, with shorter steps and more virtual fragments.
+    /// Andersen et al. 2016's four samples per pixel, or sixteen in small pictures, with shorter steps and more virtual
+    /// fragments.
     pub fn best(size: [usize; 2]) -> Self {
         Self {
             size,
-            halvings: 1,
+            halvings: if size[0] * size[1] <= SMALL { 2 } else { 1 },
             blending: Blending::Virtual { fragments: 16 },
             stepping: Stepping { depth: 0.15, layers: 0.25 },
             resolution: Resolution { coarsest_details: 2.0, ..Resolution::default() },
@@ -107,6 +108,9 @@ impl Settings {
         View::new(camera, origin_m, self.size.map(|n| n * self.edge_samples()))
     }
 }
+
+/// Pixels of a picture small enough for them to be wider than clumps are fine, and to cost little.
+const SMALL: usize = 1 << 17;
 
 /// Most halvings of a pixel's edge: a tile's 32 samples are then four pixels.
 pub const MOST_HALVINGS: u32 = 3;
