@@ -2,6 +2,7 @@
 
 pub mod enter;
 pub mod light;
+mod measure;
 pub mod prisms;
 pub mod volume;
 

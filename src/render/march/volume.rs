@@ -2,11 +2,11 @@
 
 use super::light::Shadows;
 use super::prisms::Prisms;
-use super::{From, Journey, Start, Stepping, Steps, Traveller};
+use super::{From, Steps};
 use crate::fur::groom::clump::Nearby;
 use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::Vec3;
-use crate::math::lanes::{self, F32s, Isa, MOST, Mask, Row, Vec3Row, Vec3s};
+use crate::math::lanes::{self, F32s, Isa, Mask, Vec3Row, Vec3s};
 use crate::render::pelt::{Layer, Pelt};
 use crate::render::shell::Shell;
 use crate::render::shell::block::{Block, Blocks, codes};
@@ -294,17 +294,6 @@ impl<'a> Volume<'a> {
     fn reach_at<I: Isa>(&self, t: F32s<I>) -> F32s<I> {
         t.lt(F32s::splat(1.0 - 1e-4)).keep(self.reaching.at_lanes(t))
     }
-
-    /// Optical depths along rays, each up to `enough`.
-    pub fn depths_along(&self, journeys: &[Journey], stepping: &Stepping, enough: f32) -> Vec<f32> {
-        lanes::run(Measure { volume: self, journeys, stepping, enough })
-    }
-
-    /// Optical depth along one ray.
-    pub fn depth_along(&self, origin_m: Vec3, direction: Vec3, start: Start, stepping: &Stepping, enough: f32) -> f32 {
-        let journey = Journey { origin_m, direction, start, far_m: f32::INFINITY };
-        self.depths_along(&[journey], stepping, enough)[0]
-    }
 }
 
 /// Fills the density of one prism.
@@ -349,59 +338,5 @@ impl lanes::Work for Fill<'_, '_> {
             }
         }
         Block::of_codes(d, layers as u32, values)
-    }
-}
-
-/// Follows rays for their optical depth.
-struct Measure<'v, 'a, 'j> {
-    volume: &'v Volume<'a>,
-    journeys: &'j [Journey],
-    stepping: &'j Stepping,
-    enough: f32,
-}
-
-impl lanes::Work for Measure<'_, '_, '_> {
-    type Output = Vec<f32>;
-
-    #[inline(always)]
-    fn run<I: Isa>(self) -> Vec<f32> {
-        let Self { volume, journeys, stepping, enough } = self;
-        let found = vec![0.0; journeys.len()];
-        let mut depths = Depths { journeys, next: 0, index: [0; MOST], sum: Row::default(), enough, found };
-        super::march::<I, _>(volume, stepping, &mut depths);
-        depths.found
-    }
-}
-
-/// Sums optical depth.
-struct Depths<'j> {
-    journeys: &'j [Journey],
-    next: usize,
-    index: [usize; MOST],
-    sum: Row,
-    enough: f32,
-    found: Vec<f32>,
-}
-
-impl<I: Isa> Traveller<I> for Depths<'_> {
-    #[inline(always)]
-    fn next(&mut self, lane: usize) -> Option<Journey> {
-        let journey = *self.journeys.get(self.next)?;
-        self.index[lane] = self.next;
-        self.sum.0[lane] = 0.0;
-        self.next += 1;
-        Some(journey)
-    }
-
-    #[inline(always)]
-    fn visit(&mut self, _: &Prisms, steps: &Steps<I>, on: Mask<I>) -> Mask<I> {
-        let sum = F32s::of(&self.sum) + on.keep(steps.depth);
-        self.sum = sum.row();
-        sum.lt(F32s::splat(self.enough))
-    }
-
-    #[inline(always)]
-    fn end(&mut self, lane: usize) {
-        self.found[self.index[lane]] = self.sum.0[lane];
     }
 }
