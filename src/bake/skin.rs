@@ -49,6 +49,7 @@ pub fn groom(asset: &Asset, part: &Part, preset: &Preset, scale: &Scale) -> Resu
     let diagonal_m = scale.diagonal_m as f32;
     let guard = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
     let undercoat = Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m);
+    // Undercoat must not cross, as it is a volume; single guard hairs may.
     let height_m = if undercoat.height_m() > 0.0 { undercoat.height_m() } else { guard.height_m() };
     let fields = fields::gather(&mesh, &preset.groom, &maps, comb.direction, tint, height_m);
     Ok(Groomed { fields, mesh, singularities: comb.singularities, notes })

@@ -14,7 +14,7 @@ const LEAST_AREA: f32 = 0.1;
 /// Heights at which areas are tried, in shares of the hair's.
 const TRIED: [f32; 3] = [1.0 / 3.0, 2.0 / 3.0, 1.0];
 
-/// How often leans are averaged: what still crosses then has hardly a third of its crossings left to lose.
+/// How often leans are averaged: three quarters of a scan's crossings are gone by then, and the rest go slowly.
 const ROUNDS: usize = 60;
 
 /// Rounds after which averaging reaches one ring of vertices further.

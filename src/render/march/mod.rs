@@ -220,7 +220,7 @@ fn advance<'v, I: Isa, T: Traveller<I>>(
 
     let layer_m = j.up_m.length() * (1.0 / volume.layers() as f32);
     let least_m = layer_m * 1e-3;
-    let (side, side_m) = next_side(&places, rates);
+    let (side, side_m) = next_side(&places, rates, 1.0);
     let depth = traveller.patience() * stepping.depth;
     let expected_m = F32s::of(&flight.per_depth_m) * depth;
     let longest_m = (layer_m * stepping.layers).min(expected_m).max(least_m);
@@ -288,17 +288,17 @@ struct From<I: Isa> {
 }
 
 /// The sides that straight lines in coordinates pass first, and after what distance: the edges opposite to corners 0, 1
-/// and 2, then top and skin.
+/// and 2, then the top, at height `top`, and skin.
 #[inline(always)]
-fn next_side<I: Isa>(places: &Places<I>, rates: Vec3s<I>) -> (F32s<I>, F32s<I>) {
-    let one = F32s::splat(1.0);
+pub(in crate::render) fn next_side<I: Isa>(places: &Places<I>, rates: Vec3s<I>, top: f32) -> (F32s<I>, F32s<I>) {
     let mut side = F32s::splat(3.0);
     let mut after = F32s::splat(f32::INFINITY);
+    let b = places.barycentric();
     let left = [
-        (one - places.b[0] - places.b[1], -rates.x - rates.y),
-        (places.b[0], rates.x),
-        (places.b[1], rates.y),
-        (one - places.t, -rates.z),
+        (b.x, -rates.x - rates.y),
+        (b.y, rates.x),
+        (b.z, rates.y),
+        (F32s::splat(top) - places.t, -rates.z),
         (places.t, rates.z),
     ];
     for (i, (left, rate)) in left.into_iter().enumerate() {
@@ -323,7 +323,7 @@ fn beyond(volume: &Volume<'_>, flight: &Flight<'_>, lane: usize, side: f32) -> O
 /// A place on the edge opposite to `corner`, in the neighbour whose `opposite` corner lies beyond it.
 ///
 /// The neighbour runs through the shared edge the other way around.
-fn across(place: &Place, corner: usize, opposite: usize) -> Place {
+pub(in crate::render) fn across(place: &Place, corner: usize, opposite: usize) -> Place {
     let b = place.barycentric().to_array();
     let mut beyond = [0.0; 3];
     beyond[(opposite + 1) % 3] = b[(corner + 2) % 3];

@@ -5,6 +5,7 @@ use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, MOST, Mask, Row, Vec3Row, Vec3s};
 use crate::render::march::prisms::{Places, Prisms};
 use crate::render::march::volume::Vertex;
+use crate::render::march::{across, next_side};
 use crate::render::shell::prism::Place;
 
 /// Longest step, as a share of the tips' height over the skin.
@@ -201,31 +202,4 @@ fn width<I: Isa>(table: &[f32; LAYERS * 4 + 1], share: F32s<I>) -> F32s<I> {
         (from.0[lane], to.0[lane]) = (table[at], table[at + 1]);
     }
     F32s::of(&from) + (share - low) * (F32s::of(&to) - F32s::of(&from))
-}
-
-/// The sides passed first: opposite to corners 0, 1 and 2, then the tips and the skin; and after what distance, m.
-#[inline(always)]
-fn next_side<I: Isa>(places: &Places<I>, rates: Vec3s<I>, tips: f32) -> (F32s<I>, F32s<I>) {
-    let b = places.barycentric();
-    let (mut side, mut after) = (F32s::splat(3.0), F32s::splat(f32::INFINITY));
-    let left =
-        [(b.x, -rates.x - rates.y), (b.y, rates.x), (b.z, rates.y), (-places.t + tips, -rates.z), (places.t, rates.z)];
-    for (i, (left, rate)) in left.into_iter().enumerate() {
-        let distance = left / -rate;
-        let first = rate.lt(F32s::splat(0.0)) & distance.lt(after);
-        side = first.select(F32s::splat(i as f32), side);
-        after = first.select(distance, after);
-    }
-    (side, after)
-}
-
-/// A place on the edge opposite to `corner`, in the neighbour whose `opposite` corner lies beyond it: it runs through the
-/// shared edge the other way around.
-fn across(place: &Place, corner: usize, opposite: usize) -> Place {
-    let b = place.barycentric().to_array();
-    let mut next = [0.0; 3];
-    next[(opposite + 1) % 3] = b[(corner + 2) % 3];
-    next[(opposite + 2) % 3] = b[(corner + 1) % 3];
-    let whole = next[0] + next[1] + next[2];
-    Place { b: [next[1] / whole, next[2] / whole], t: place.t }
 }
