@@ -10,6 +10,8 @@
 
 // How much deeper a ray's last steps may be than its first.
 const MOST_PATIENCE: f32 = 4.0;
+// How much longer they may be.
+const MOST_LENGTHENED: f32 = 2.0;
 const NO_STRETCH: u32 = 0xffffffffu;
 // Some drivers end loops that run longer.
 const MOST_ROUNDS: u32 = 60000u;
@@ -149,8 +151,9 @@ fn march_pixel(at: u32) -> u32 {
         var end_m = 0.0;
         for (var s = 0u; s < MOST_STEPS && walk.alive && through > scene.opaque; s++) {
             // A step's error grows as the square of its depth, and counts as what is left of the ray.
-            let step_depth = scene.step_depth * min(inverseSqrt(through), MOST_PATIENCE);
-            let taken = advance(&walk, view.eye_m, direction, far_m, Stepping(step_depth, scene.step_layers));
+            let patience = min(inverseSqrt(through), MOST_PATIENCE);
+            let stepping = Stepping(scene.step_depth * patience, scene.step_layers * min(patience, MOST_LENGTHENED));
+            let taken = advance(&walk, view.eye_m, direction, far_m, stepping);
             if taken.depth <= 0.0 {
                 continue;
             }

@@ -6,7 +6,7 @@ use crate::math::Vec3;
 use crate::math::fast::exp_negative;
 
 /// Transmittance of fragments behind which further ones are left out, over that which counts as opaque: room for rounding.
-pub const HIDDEN: f32 = 0.5;
+pub const HIDDEN: f32 = 0.9;
 
 /// How undercoat and guard hair are put into one order.
 #[derive(Clone, Copy, Debug, PartialEq)]

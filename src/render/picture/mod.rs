@@ -84,6 +84,7 @@ impl Settings {
             size,
             halvings: if size[0] * size[1] <= SMALL { 2 } else { 1 },
             blending: Blending::Virtual { fragments: 16 },
+            opaque: 0.004,
             stepping: Stepping { depth: 0.15, layers: 0.25 },
             resolution: Resolution { coarsest_details: 2.0, ..Resolution::default() },
             ..Self::default()

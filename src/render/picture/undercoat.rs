@@ -150,8 +150,9 @@ impl<I: Isa> Traveller<I> for Sight<'_> {
 
     #[inline(always)]
     fn patience(&self) -> F32s<I> {
-        // A step's error grows as the square of its depth, and counts as what is left of the ray.
-        (F32s::splat(1.0) / F32s::of(&self.through)).sqrt().within(1.0, MOST_PATIENCE)
+        // A step's error grows as the square of its depth, and counts as what is left of the ray behind guard hair and undercoat.
+        let left = F32s::of(&self.through) * F32s::of(&self.veil);
+        (F32s::splat(1.0) / left).sqrt().within(1.0, MOST_PATIENCE)
     }
 
     #[inline(always)]
