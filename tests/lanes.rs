@@ -6,7 +6,7 @@ use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::undercoat::{Pattern, Undercoat};
 use furrier::math::Vec3;
 use furrier::math::hash::Stream;
-use furrier::math::lanes::{self, F32s, Isa, Row, Scalar, Vec3Row, Vec3s, Work};
+use furrier::math::lanes::{self, F32s, Isa, Row, Scalar, U32s, Vec3Row, Vec3s, Work};
 use furrier::math::noise::{simplex, simplex_lanes};
 use furrier::render::shell::block::{Block, codes};
 
@@ -49,6 +49,32 @@ impl Work for Over<'_, Function> {
         }
         out
     }
+}
+
+/// Numbers of a table by index.
+struct Gather<'a> {
+    table: &'a [f32],
+    at: &'a [u32],
+}
+
+impl Work for Gather<'_> {
+    type Output = Vec<f32>;
+
+    #[inline(always)]
+    fn run<I: Isa>(self) -> Vec<f32> {
+        let all = |some: &[u32]| U32s::<I>::each(|lane| some.get(lane).copied().unwrap_or(0)).gather(self.table).row();
+        self.at.chunks(I::LANES).flat_map(|some| all(some).0[..some.len()].to_vec()).collect()
+    }
+}
+
+#[test]
+fn what_lies_past_a_tables_end_is_its_last_number() {
+    let table: Vec<f32> = (0..11).map(|i| i as f32 + 0.5).collect();
+    let at = [0, 10, 3, 11, 1 << 20, u32::MAX, 1 << 31, 7, 5];
+    let expected: Vec<f32> = at.iter().map(|&i| table[(i as usize).min(10)]).collect();
+    assert_eq!(lanes::run(Gather { table: &table, at: &at }), expected);
+    assert_eq!(Gather { table: &table, at: &at }.run::<Scalar>(), expected);
+    assert_eq!(lanes::run(Gather { table: &[], at: &at }), vec![0.0; at.len()]);
 }
 
 fn values(low: f32, high: f32) -> Vec<f32> {

@@ -11,7 +11,7 @@ use furrier::render::picture::{Picture, Settings, draw};
 use furrier::render::rays::Rays;
 use furrier::render::resolve::{Blending, Face, composite, settle};
 use furrier::render::strands::ribbon::{Narrow, Share, Window, rasterise};
-use furrier::render::strands::{Fragment, Knot};
+use furrier::render::strands::{Fragment, Knot, Parts};
 use furrier::render::{DepthRange, Scene};
 
 pub fn covered(a: &Knot, b: &Knot) -> f64 {
@@ -105,7 +105,7 @@ fn a_hair_thinner_than_a_pixel_covers_its_share() {
 fn a_thousand_fragments_at_one_depth_are_ordered_by_id() {
     let mut random = Stream::new(5);
     let mut fragments: Vec<Fragment> =
-        (0..1000).map(|id| Fragment::new(if id < 500 { 1.0 } else { 2.0 }, id, [0.002, 1.0], id, 0)).collect();
+        (0..1000).map(|id| Fragment::new(if id < 500 { 1.0 } else { 2.0 }, id, Parts::new(0.002, 1.0), id)).collect();
     let draw = |fragments: &[Fragment]| {
         composite(
             Layers::All,
@@ -135,7 +135,7 @@ fn a_thousand_fragments_at_one_depth_are_ordered_by_id() {
 
 #[test]
 fn a_pixels_fragments_are_joined_and_cut_off() {
-    let of = |z_m, id, coverage| Fragment::new(z_m, id, [coverage, 0.5], id, 0);
+    let of = |z_m, id, coverage| Fragment::new(z_m, id, Parts::new(coverage, 0.5), id);
     let mut fragments = [of(3.0, 8, 1.0), of(4.0, 9, 1.0), of(1.0, 7, 0.5), of(2.0, 7, 0.5)];
     let mut veil = [0.0; 4];
     // A hair's neighbouring pieces cover the pixel once; the last one is hidden.

@@ -31,8 +31,7 @@ impl Work for Read<'_> {
     fn run<I: Isa>(self) -> f32 {
         let mut lattices = Lattices::new(self.layers);
         (0..I::LANES).for_each(|lane| lattices.set(lane, self.lattice));
-        let on = F32s::<I>::splat(1.0).gt(F32s::splat(0.0));
-        lattices.at(Vec3s::splat(self.b), F32s::splat(self.t * self.layers as f32), on).row().0[0]
+        lattices.at(Vec3s::<I>::splat(self.b), F32s::splat(self.t * self.layers as f32)).row().0[0]
     }
 }
 

@@ -230,7 +230,7 @@ impl<'a> MeanShadow<'a> {
         let (foot_m, offset_m) = (self.shell.skin.positions_m[class as usize], self.shell.offsets_m[class as usize]);
         let tips_m = self.tips * offset_m.length();
         let mut meetings = Vec::new();
-        self.faces.meetings(&self.shell, foot_m + offset_m * t, NEAR * tips_m, &mut meetings);
+        self.faces.meetings(foot_m + offset_m * t, NEAR * tips_m, &mut meetings);
         let skin = meetings.iter().find(|meeting| meeting.place.t <= 0.0);
         let own = self.start(class, t, skin.map_or(f32::INFINITY, |skin| skin.at_m));
         Column { own, tips_m, meetings }

@@ -150,8 +150,7 @@ pub fn settle(fragments: &mut [Fragment], veil: &mut [f32], hidden: f32) -> usiz
     for i in 0..fragments.len() {
         let fragment = fragments[i];
         if count > 0 && fragments[count - 1].id() == fragment.id() {
-            let coverage = &mut fragments[count - 1].coverage;
-            *coverage = (*coverage + fragment.coverage).min(1.0);
+            fragments[count - 1].join(&fragment);
         } else {
             if through < hidden {
                 break;

@@ -37,9 +37,8 @@ impl Table {
     pub fn at_lanes<I: Isa>(&self, x: F32s<I>) -> F32s<I> {
         let at = x.within(0.0, 1.0) * INTERVALS as f32;
         let low = at.floor().min(F32s::splat((INTERVALS - 1) as f32));
-        let i = low.to_whole().row();
-        let from = F32s::each(|lane| self.0[i[lane] as usize & (INTERVALS - 1)]);
-        let to = F32s::each(|lane| self.0[(i[lane] as usize & (INTERVALS - 1)) + 1]);
+        let i = low.to_whole();
+        let (from, to) = (i.gather(&self.0), i.plus_splat(1).gather(&self.0));
         from + (at - low) * (to - from)
     }
 }

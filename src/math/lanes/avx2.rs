@@ -3,12 +3,13 @@
 
 use super::{Isa, MOST, Row, Work};
 use std::arch::x86_64::{
-    __m256, __m256i, _CMP_LT_OQ, _mm256_add_epi32, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_andnot_ps,
-    _mm256_blendv_ps, _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_cvtepi32_ps,
-    _mm256_div_ps, _mm256_floor_ps, _mm256_load_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps,
-    _mm256_mullo_epi32, _mm256_or_si256, _mm256_permutevar8x32_ps, _mm256_set1_epi32, _mm256_set1_ps,
-    _mm256_setr_epi32, _mm256_slli_epi32, _mm256_sqrt_ps, _mm256_srai_epi32, _mm256_srli_epi32, _mm256_store_ps,
-    _mm256_storeu_si256, _mm256_sub_ps, _mm256_xor_si256,
+    __m256, __m256i, _CMP_LT_OQ, _MM_HINT_T0, _mm_prefetch, _mm256_add_epi32, _mm256_add_ps, _mm256_and_ps,
+    _mm256_and_si256, _mm256_andnot_ps, _mm256_blendv_ps, _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps,
+    _mm256_cmpeq_epi32, _mm256_cvtepi32_ps, _mm256_div_ps, _mm256_floor_ps, _mm256_i32gather_ps, _mm256_load_ps,
+    _mm256_max_ps, _mm256_min_epu32, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_mullo_epi32,
+    _mm256_or_si256, _mm256_permutevar8x32_ps, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32, _mm256_slli_epi32,
+    _mm256_sqrt_ps, _mm256_srai_epi32, _mm256_srli_epi32, _mm256_store_ps, _mm256_storeu_si256, _mm256_sub_ps,
+    _mm256_xor_si256,
 };
 
 /// Eight lanes.
@@ -30,6 +31,13 @@ impl Avx2 {
         // SAFETY: a value of this type is only made where the machine has AVX2.
         unsafe { with_avx2(work) }
     }
+}
+
+/// Asks memory for what will be read soon.
+#[inline(always)]
+pub fn prefetch<T>(of: &T) {
+    // SAFETY: a hint, which every machine of this kind has, about memory that may be read.
+    unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(of).cast()) }
 }
 
 /// Calls one instruction of AVX2.
@@ -116,6 +124,18 @@ impl Isa for Avx2 {
     #[inline(always)]
     fn pick(row: &Row, at: __m256i) -> __m256 {
         vector!(_mm256_permutevar8x32_ps(_mm256_load_ps(row.0.as_ptr()), at))
+    }
+    #[inline(always)]
+    fn gather(table: &[f32], at: __m256i) -> __m256 {
+        let Some(last) = table.len().checked_sub(1) else { return Self::splat(0.0) };
+        let last = last.min(i32::MAX as usize) as i32;
+        // No index leads past the table's last number.
+        vector!(_mm256_i32gather_ps::<4>(table.as_ptr(), _mm256_min_epu32(at, _mm256_set1_epi32(last))))
+    }
+    #[inline(always)]
+    fn of_whole(all: [u32; MOST]) -> __m256i {
+        let [a, b, c, d, e, f, g, h] = all.map(|x| x as i32);
+        vector!(_mm256_setr_epi32(a, b, c, d, e, f, g, h))
     }
     #[inline(always)]
     fn mask_from_bits(bits: u32) -> __m256 {

@@ -97,6 +97,10 @@ pub trait Isa: Copy + Debug + Default + PartialEq + 'static {
     fn signed_to_f(u: Self::U) -> Self::F;
     /// Numbers of a row of [`MOST`], by the lowest three bits of whole numbers.
     fn pick(row: &Row, at: Self::U) -> Self::F;
+    /// Numbers of a table, by index; past its end the last, and 0 of an empty one.
+    fn gather(table: &[f32], at: Self::U) -> Self::F;
+    /// Whole numbers of all lanes.
+    fn of_whole(all: [u32; MOST]) -> Self::U;
 }
 
 /// Work that is worth doing in lanes.
@@ -114,6 +118,15 @@ pub fn run<W: Work>(work: W) -> W::Output {
         return avx2.run(work);
     }
     work.run::<Scalar>()
+}
+
+/// Asks memory for what will be read soon, where the machine can be asked.
+#[inline(always)]
+pub fn prefetch<T>(of: &T) {
+    #[cfg(target_arch = "x86_64")]
+    avx2::prefetch(of);
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = of;
 }
 
 /// Numbers in lanes.
@@ -224,6 +237,22 @@ impl<I: Isa> U32s<I> {
     #[inline(always)]
     pub fn splat(x: u32) -> Self {
         Self(I::splat_whole(x))
+    }
+
+    /// What `f` gives for each lane.
+    #[inline(always)]
+    pub fn each(mut f: impl FnMut(usize) -> u32) -> Self {
+        let mut all = [0; MOST];
+        for (lane, x) in all.iter_mut().enumerate().take(I::LANES) {
+            *x = f(lane);
+        }
+        Self(I::of_whole(all))
+    }
+
+    /// Numbers of a table, by index; past its end the last, and 0 of an empty one.
+    #[inline(always)]
+    pub fn gather(self, table: &[f32]) -> F32s<I> {
+        F32s(I::gather(table, self.0))
     }
 
     /// The numbers with these bits.

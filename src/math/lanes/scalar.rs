@@ -81,6 +81,14 @@ impl Isa for Scalar {
         row.0[at as usize % MOST]
     }
     #[inline(always)]
+    fn gather(table: &[f32], at: u32) -> f32 {
+        table.get(at as usize).or(table.last()).copied().unwrap_or(0.0)
+    }
+    #[inline(always)]
+    fn of_whole(all: [u32; MOST]) -> u32 {
+        all[0]
+    }
+    #[inline(always)]
     fn mask_from_bits(bits: u32) -> bool {
         bits & 1 != 0
     }

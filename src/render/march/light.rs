@@ -1,5 +1,6 @@
 //! Light in undercoat: the key light's shadow, stored by sub-element, and what a step sends to the eye.
 
+use super::columns::{Columns, Site};
 use super::prisms::Prisms;
 use super::volume::{OTHER_NS, Volume};
 use super::{Journey, Start, Stepping, Steps};
@@ -9,6 +10,7 @@ use crate::render::mean::MeanShadow;
 use crate::render::pelt::{Lighting, Pelt, ramps, sky_depths, slant_depths, terminators, through};
 use crate::render::shell::lattice::{self, Lattice};
 use crate::render::shell::prism::Place;
+use crate::render::shell::{Shell, block};
 use crate::shade::kajiya_kay::KajiyaKay;
 use crate::shade::light::Directional;
 use crate::shade::{Angles, shadow_power};
@@ -33,15 +35,16 @@ const TOWARDS_LIGHT: Stepping = Stepping { depth: 0.5, layers: 0.5 };
 pub struct Shadows {
     to_light: Vec3,
     lattices: Vec<OnceLock<Lattice>>,
+    columns: Columns,
     /// Time spent filling, summed over threads, ns.
     pub(super) spent_ns: AtomicU64,
 }
 
 impl Shadows {
     /// None filled yet.
-    pub fn new(to_light: Vec3, triangles: usize) -> Self {
-        let lattices = std::iter::repeat_with(OnceLock::new).take(triangles).collect();
-        Self { to_light, lattices, spent_ns: AtomicU64::new(0) }
+    pub fn new(to_light: Vec3, shell: &Shell<'_>) -> Self {
+        let lattices = std::iter::repeat_with(OnceLock::new).take(shell.skin.triangles.len()).collect();
+        Self { to_light, lattices, columns: Columns::new(shell), spent_ns: AtomicU64::new(0) }
     }
 
     /// Bytes filled.
@@ -67,24 +70,41 @@ impl Shadows {
 
     fn fill(&self, volume: &Volume<'_>, mean: Option<&MeanShadow<'_>>, triangle: u32) -> Lattice {
         let shell = volume.shell();
-        let prism = shell.prism(triangle);
-        let (d, layers) = (volume.shadow_subdivisions(triangle), volume.layers());
-        let places: Vec<(Vec3, f32)> =
-            (0..=layers).flat_map(|level| lattice::places(d).map(move |b| (b, level as f32 / layers as f32))).collect();
-        let journey = |&(b, t): &(Vec3, f32)| {
-            let place = Place { b: [b.y, b.z], t };
-            let start = Start { at_m: 0.0, triangle, place };
-            Journey { origin_m: prism.jacobian(&place).at_m, direction: self.to_light, start, far_m: f32::INFINITY }
+        let (d, last) = (volume.shadow_subdivisions(triangle), volume.layers());
+        let levels = last as usize + 1;
+        let sites: Vec<Site<'_>> = lattice::places(d).map(|b| self.columns.site(shell, triangle, b)).collect();
+        let waiting: Vec<usize> = (0..sites.len()).filter(|&i| sites[i].stored().is_none()).collect();
+        let t_of = |level: usize| level as f32 / last as f32;
+        let journey = |site: &Site<'_>, level: usize| {
+            let place = Place { b: [site.b.y, site.b.z], t: t_of(level) };
+            let start = Start { at_m: 0.0, triangle: site.triangle, place };
+            let origin_m = shell.prism(site.triangle).jacobian(&place).at_m;
+            Journey { origin_m, direction: self.to_light, start, far_m: f32::INFINITY }
         };
-        let journeys: Vec<Journey> = places.iter().map(journey).collect();
+        let journeys: Vec<Journey> = (0..levels)
+            .flat_map(|level| waiting.iter().map(move |&i| (i, level)))
+            .map(|(i, level)| journey(&sites[i], level))
+            .collect();
         let enough = if shell.neighbours.at_border(triangle) { DARK_AT_BORDERS } else { DARK };
-        let mut depths = volume.depths_along(&journeys, &TOWARDS_LIGHT, enough);
-        if let Some(mean) = mean {
-            for (depth, &(b, t)) in depths.iter_mut().zip(&places) {
-                *depth += mean.other_depth(triangle, b, t);
+        let depths = volume.depths_along(&journeys, &TOWARDS_LIGHT, enough);
+        let mut codes = vec![0; sites.len() * levels];
+        for (site, codes) in sites.iter().zip(codes.chunks_exact_mut(levels)) {
+            if let Some(stored) = site.stored() {
+                codes.copy_from_slice(stored);
             }
         }
-        Lattice::new(d, &depths)
+        for (k, &i) in waiting.iter().enumerate() {
+            let (site, codes) = (&sites[i], &mut codes[i * levels..][..levels]);
+            for (level, code) in codes.iter_mut().enumerate() {
+                let other = mean.map_or(0.0, |mean| mean.other_depth(site.triangle, site.b, t_of(level)));
+                *code = block::code(depths[level * waiting.len() + k] + other);
+            }
+            if let Some(cell) = site.shared {
+                // Whoever was first has found the same.
+                let _ = cell.set((&*codes).into());
+            }
+        }
+        Lattice::of_codes(d, codes)
     }
 }
 

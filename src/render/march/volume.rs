@@ -6,7 +6,7 @@ use super::{From, Steps};
 use crate::fur::groom::clump::Nearby;
 use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::Vec3;
-use crate::math::lanes::{self, F32s, Isa, Mask, Vec3Row, Vec3s};
+use crate::math::lanes::{self, F32s, Isa, Vec3Row, Vec3s};
 use crate::render::pelt::{Layer, Pelt};
 use crate::render::shell::Shell;
 use crate::render::shell::block::{Block, Blocks, codes};
@@ -152,7 +152,7 @@ impl<'a> Volume<'a> {
             subdivisions,
             density: std::iter::repeat_with(OnceLock::new).take(triangles).collect(),
             density_ns: AtomicU64::new(0),
-            shadows: Shadows::new(to_key, triangles),
+            shadows: Shadows::new(to_key, &shell),
             reaching: Table::new(|t| undercoat.reaching(t)),
             above,
             level,
@@ -256,7 +256,6 @@ impl<'a> Volume<'a> {
         blocks: &Blocks<'_>,
         from: &From<I>,
         length_m: F32s<I>,
-        on: Mask<I>,
     ) -> Steps<I> {
         let zero = F32s::splat(0.0);
         let middle = from.places.moved(from.rates, length_m * 0.5).inside();
@@ -265,7 +264,7 @@ impl<'a> Volume<'a> {
         let up_m = from.j.up_m.length();
         let hair = from.j.up_m * (F32s::splat(1.0) / up_m);
         let cosine = hair.dot(from.direction);
-        let per_m2 = prisms.density(b) * blocks.at(b, middle.t, on) * undercoat.density_per_m2;
+        let per_m2 = prisms.density(b) * blocks.at(b, middle.t) * undercoat.density_per_m2;
         // Hairs per volume and unit of t: on the triangle stand per_m2 · 2A/2 of them, in a volume of |det|/2 per t.
         let per_volume = per_m2 * prisms.twice_area_m2() / from.j.determinant.abs();
         // Not √(1 − cos²), which rounds to a thousandth where a ray runs along the hair.

@@ -8,6 +8,7 @@ use crate::render::bins::{Bins, Grid, Reach, TILE};
 use crate::render::shell::Shell;
 use crate::render::shell::outer::{self, corner};
 use crate::render::shell::prism::Place;
+use rayon::prelude::*;
 
 /// Where a ray towards the light meets a face.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +33,8 @@ pub(super) struct Faces {
     triangles: usize,
     /// Those after the skin.
     outer: Vec<(u32, [Place; 3])>,
+    /// Corners of all, as the light sees them.
+    corners: Vec<[Vec3; 3]>,
 }
 
 /// Faces per square, about.
@@ -54,7 +57,10 @@ impl Faces {
             bins: Bins::default(),
             triangles,
             outer: (0..triangles as u32).flat_map(of_triangle).collect(),
+            corners: Vec::new(),
         };
+        let count = triangles + faces.outer.len();
+        faces.corners = (0..count).into_par_iter().map(|face| faces.corners_of(shell, face)).collect();
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         for (foot_m, offset_m) in shell.skin.positions_m.iter().zip(&shell.offsets_m) {
             for t in [0.0, tips] {
@@ -63,7 +69,6 @@ impl Faces {
             }
         }
         let extent_m = (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
-        let count = triangles + faces.outer.len();
         let square_m = (extent_m.x * extent_m.y * PER_SQUARE / count as f32).sqrt();
         let square_m = square_m.max(extent_m.x.max(extent_m.y) / MOST_SQUARES);
         if !(square_m > 0.0 && square_m < f32::INFINITY) {
@@ -74,7 +79,7 @@ impl Faces {
         faces.grid = Grid::whole([extent_m.x, extent_m.y].map(|e| (e * faces.px_per_m) as usize + 1));
         faces.bins = Bins::new(&faces.grid, count, |i| {
             let mut reach = Reach::NOTHING;
-            for p in faces.corners(shell, i) {
+            for &p in &faces.corners[i] {
                 let [x, y] = faces.px(p);
                 reach.add(x, y, 0.0);
             }
@@ -85,7 +90,7 @@ impl Faces {
 
     /// Bytes held.
     pub(super) fn bytes(&self) -> usize {
-        self.bins.bytes() + self.outer.len() * size_of::<(u32, [Place; 3])>()
+        self.bins.bytes() + size_of_val(&self.outer[..]) + size_of_val(&self.corners[..])
     }
 
     /// A point as the light sees it: across it twice, and towards it, m.
@@ -104,7 +109,7 @@ impl Faces {
         }
     }
 
-    fn corners(&self, shell: &Shell<'_>, face: usize) -> [Vec3; 3] {
+    fn corners_of(&self, shell: &Shell<'_>, face: usize) -> [Vec3; 3] {
         let (triangle, places) = self.places(face);
         let corners = shell.skin.triangles[triangle as usize].map(|v| v as usize);
         places.map(|place| {
@@ -121,7 +126,7 @@ impl Faces {
 
     /// Where a ray from a point to the light meets tips and borders before it meets skin, and then that, from `near_m` on;
     /// in no order.
-    pub(super) fn meetings(&self, shell: &Shell<'_>, from_m: Vec3, near_m: f32, out: &mut Vec<Meeting>) {
+    pub(super) fn meetings(&self, from_m: Vec3, near_m: f32, out: &mut Vec<Meeting>) {
         out.clear();
         let from = self.seen(from_m);
         let [x, y] = self.px(from);
@@ -132,7 +137,7 @@ impl Faces {
         let mut skin: Option<Meeting> = None;
         for &face in self.bins.of(row * self.grid.columns + column) {
             let face = face as usize;
-            let [a, b, c] = self.corners(shell, face).map(|p| p - from);
+            let [a, b, c] = self.corners[face].map(|p| p - from);
             // Products in this order are the same, but for their sign, from both sides of an edge: no ray slips through.
             let cross = |p: Vec3, q: Vec3| p.x * q.y - p.y * q.x;
             let e = Vec3::new(cross(b, c), cross(c, a), cross(a, b));

@@ -195,11 +195,7 @@ impl Walk<'_, '_> {
 #[inline(always)]
 fn width<I: Isa>(table: &[f32; LAYERS * 4 + 1], share: F32s<I>) -> F32s<I> {
     let low = share.floor().min(F32s::splat((LAYERS * 4 - 1) as f32));
-    let at = low.to_whole().row();
-    let (mut from, mut to) = (Row::default(), Row::default());
-    for lane in 0..I::LANES {
-        let at = (at[lane] as usize).min(LAYERS * 4 - 1);
-        (from.0[lane], to.0[lane]) = (table[at], table[at + 1]);
-    }
-    F32s::of(&from) + (share - low) * (F32s::of(&to) - F32s::of(&from))
+    let at = low.to_whole();
+    let (from, to) = (at.gather(table), at.plus_splat(1).gather(table));
+    from + (share - low) * (to - from)
 }

@@ -7,7 +7,7 @@ use crate::data::strands::Strands;
 use crate::math::lanes::{self, F32s, Isa, Scalar, Vec3Row};
 use crate::render::bins::TILE;
 use crate::render::strands::ribbon::{self, NARROW, Narrow, Window};
-use crate::render::strands::{Fragment, Knot, Streak, radiance_at};
+use crate::render::strands::{Fragment, Knot, Parts, Streak, radiance_at};
 
 /// Draws pieces of strands into a tile, the nearest first.
 pub(super) struct Brush<'a, 'p> {
@@ -33,6 +33,7 @@ impl lanes::Work for Brush<'_, '_> {
             }
             // Some are fetched at a time: the machine waits for several at once then.
             for few in some.chunks(FETCH_AT_ONCE) {
+                few.iter().for_each(|&key| self.call(key as u32));
                 fetched.clear();
                 for &key in few {
                     if let Some(piece) = self.fetch(f32::from_bits((key >> 32) as u32), key as u32) {
@@ -48,6 +49,15 @@ impl lanes::Work for Brush<'_, '_> {
 }
 
 impl Brush<'_, '_> {
+    /// Lets memory bring a piece.
+    #[inline(always)]
+    fn call(&self, piece: u32) {
+        lanes::prefetch(&self.band.knots[piece as usize]);
+        let looks = &self.band.looks[(piece / self.strands.points_per_strand as u32) as usize];
+        lanes::prefetch(&looks.x);
+        lanes::prefetch(&looks.z);
+    }
+
     /// A piece, where it may be seen.
     #[inline(always)]
     fn fetch(&self, nearest_m: f32, piece: u32) -> Option<Piece> {
@@ -91,6 +101,8 @@ impl Brush<'_, '_> {
             let sites = self.sites(piece, F32s::<I>::of(&found.along));
             let inside = u32::MAX >> (u32::BITS - (narrow.rows[1] - first).min(I::LANES as i32) as u32);
             let origin = (first as usize - first_row) * down;
+            let opacity = F32s::<I>::of(&sites.opacity);
+            let code = Parts::codes(opacity);
             let (before, streak) = (self.guard.count(), self.guard.next_streak());
             self.guard.make_room(NARROW * I::LANES);
             for k in 0..NARROW {
@@ -98,14 +110,14 @@ impl Brush<'_, '_> {
                 if left == 0 {
                     continue;
                 }
+                let parts = Parts::of_lanes(F32s::<I>::of(&found.coverage[k]), opacity, code).row();
                 while left != 0 {
                     let lane = left.trailing_zeros() as usize;
                     left &= left - 1;
                     let z_m = sites.z_m.0[lane];
                     let pixel = origin + lane * down + (found.begin[lane] as usize + k - first_pixel) * along;
-                    let parts = [found.coverage[k].0[lane], sites.opacity.0[lane]];
-                    let fragment = Fragment::new(z_m, piece.id, parts, streak + lane as u32, pixel as u32);
-                    self.guard.add(fragment, || {
+                    let fragment = Fragment::new(z_m, piece.id, Parts(parts[lane]), streak + lane as u32);
+                    self.guard.add(pixel, fragment, || {
                         let (at, linear) = (self.place.pixel(pixel), found.linear.0[lane]);
                         pass.before_skin(&piece.a, &piece.b, linear, at, z_m, skin, pixel)
                     });
@@ -116,7 +128,7 @@ impl Brush<'_, '_> {
                 let radiance = radiance_at(&piece.looks, F32s::<I>::of(&sites.s)).rows();
                 for lane in 0..u32::BITS - inside.leading_zeros() {
                     let lane = lane as usize;
-                    self.guard.show(Streak { radiance: radiance.lane(lane), s: sites.s.0[lane], stroke });
+                    self.guard.show(Streak { radiance: radiance.lane(lane), stroke }, sites.s.0[lane]);
                 }
             }
         }
@@ -128,17 +140,18 @@ impl Brush<'_, '_> {
         let (pass, stroke) = (self.pass, self.guard.next_stroke());
         ribbon::rasterise(&piece.a, &piece.b, self.window, |share| {
             let sites = self.sites(piece, F32s::<Scalar>::splat(share.along));
-            let (z_m, parts) = (sites.z_m.0[0], [share.coverage, sites.opacity.0[0]]);
+            let (z_m, parts) = (sites.z_m.0[0], Parts::new(share.coverage, sites.opacity.0[0]));
             let pixel = self.place.at(share.pixel[0] as usize, share.pixel[1] as usize);
             let skin = self.place.skin;
             let before = self.guard.count();
-            let fragment = Fragment::new(z_m, piece.id, parts, self.guard.next_streak(), pixel as u32);
+            let fragment = Fragment::new(z_m, piece.id, parts, self.guard.next_streak());
             self.guard.make_room(1);
-            self.guard
-                .add(fragment, || pass.before_skin(&piece.a, &piece.b, share.linear, share.pixel, z_m, skin, pixel));
+            self.guard.add(pixel, fragment, || {
+                pass.before_skin(&piece.a, &piece.b, share.linear, share.pixel, z_m, skin, pixel)
+            });
             if self.guard.count() > before {
                 let radiance = radiance_at(&piece.looks, F32s::<Scalar>::of(&sites.s)).rows().lane(0);
-                self.guard.show(Streak { radiance, s: sites.s.0[0], stroke });
+                self.guard.show(Streak { radiance, stroke }, sites.s.0[0]);
             }
         });
     }

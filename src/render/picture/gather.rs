@@ -18,8 +18,12 @@ pub(super) struct Gathered {
     pieces: Vec<u32>,
     strokes: Vec<Stroke>,
     streaks: Vec<Streak>,
+    /// Where along the hair each streak lies, in [0, 1].
+    along: Vec<f32>,
     /// Fragments as they came; longer than `count` says.
     loose: Vec<Fragment>,
+    /// Where each of them falls.
+    places: Vec<u16>,
     count: usize,
     pixels: Vec<Fill>,
     /// Greatest limit in blocks of pixels, as it was a while ago: it only ever shrinks.
@@ -64,7 +68,9 @@ impl Default for Gathered {
             pieces: Vec::new(),
             strokes: Vec::new(),
             streaks: Vec::new(),
+            along: Vec::new(),
             loose: Vec::new(),
+            places: Vec::new(),
             count: 0,
             pixels: vec![fill; PIXELS],
             block_m: [f32::INFINITY; BLOCKS * BLOCKS],
@@ -84,6 +90,7 @@ impl Gathered {
         self.pieces.clear();
         self.strokes.clear();
         self.streaks.clear();
+        self.along.clear();
         self.count = 0;
         for (at, fill) in self.pixels.iter_mut().enumerate() {
             let [limit_m, clear_m] = limits_m(at);
@@ -128,16 +135,18 @@ impl Gathered {
     pub(super) fn make_room(&mut self, more: usize) {
         if self.loose.len() < self.count + more {
             self.loose.resize(2 * (self.count + more), Fragment::default());
+            self.places.resize(self.loose.len(), 0);
         }
     }
 
-    /// Adds a fragment where it may be seen; there must be room. `before_skin` is asked where the skin is near.
+    /// Adds a fragment to a pixel where it may be seen; there must be room. `before_skin` is asked where the skin is near.
     #[inline(always)]
-    pub(super) fn add(&mut self, fragment: Fragment, before_skin: impl FnOnce() -> bool) {
+    pub(super) fn add(&mut self, pixel: usize, fragment: Fragment, before_skin: impl FnOnce() -> bool) {
         let z_m = fragment.z_m();
-        let fill = &mut self.pixels[fragment.pixel as usize];
+        let fill = &mut self.pixels[pixel];
         if z_m <= fill.limit_m && (z_m < fill.clear_m || before_skin()) {
             self.loose[self.count] = fragment;
+            self.places[self.count] = pixel as u16;
             self.count += 1;
             fill.count += 1;
             fill.last_m = if z_m > fill.last_m { z_m } else { fill.last_m };
@@ -155,10 +164,11 @@ impl Gathered {
         self.streaks.len() as u32
     }
 
-    /// Says what the fragments of the next streak show.
+    /// Says what the fragments of the next streak show, and where along the hair it lies.
     #[inline(always)]
-    pub(super) fn show(&mut self, streak: Streak) {
+    pub(super) fn show(&mut self, streak: Streak, s: f32) {
         self.streaks.push(streak);
+        self.along.push(s);
     }
 
     /// The number of the next stroke.
@@ -184,6 +194,12 @@ impl Gathered {
         &self.streaks[fragment.streak as usize]
     }
 
+    /// Where along its hair a fragment lies, in [0, 1].
+    #[inline(always)]
+    pub(super) fn along(&self, fragment: &Fragment) -> f32 {
+        self.along[fragment.streak as usize]
+    }
+
     /// The piece that a streak belongs to.
     #[inline(always)]
     pub(super) fn stroke(&self, streak: &Streak) -> &Stroke {
@@ -199,8 +215,8 @@ impl Gathered {
         }
         self.fragments.resize(end as usize, Fragment::default());
         self.veil.resize(end as usize, 0.0);
-        for fragment in &self.loose[..self.count] {
-            let next = &mut self.spans[fragment.pixel as usize][1];
+        for (fragment, &pixel) in self.loose[..self.count].iter().zip(&self.places) {
+            let next = &mut self.spans[usize::from(pixel)][1];
             self.fragments[*next as usize] = *fragment;
             *next += 1;
         }

@@ -183,6 +183,7 @@ impl Pass<'_> {
                 journeys,
                 stretches,
                 opaque_m,
+                layers: self.settings.layers,
             });
         }
         // Marches of one pixel may pass through one another.
@@ -251,7 +252,7 @@ impl Pass<'_> {
         Face {
             z_m: fragment.z_m(),
             radiance: streak.radiance,
-            albedo: stroke.tint * strands.profile.ramp_at(streak.s),
+            albedo: stroke.tint * strands.profile.ramp_at(guard.along(fragment)),
             tangent: stroke.tangent,
             normal: Vec3::ZERO,
         }

@@ -1,6 +1,7 @@
 //! Rays from the eye through undercoat, gathered into virtual fragments.
 
 use super::gather::Gathered;
+use crate::data::film::Layers;
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, MOST, Mask, Row, Vec3Row, Vec3s, Work};
 use crate::render::march::light::UndercoatShader;
@@ -40,6 +41,8 @@ pub(super) struct Look<'a> {
     pub(super) stretches: &'a mut [Vec<Stretch>],
     /// By pixel, depth from which on no undercoat is seen, m.
     pub(super) opaque_m: &'a mut [f32],
+    /// What virtual fragments are to tell; of [`Layers::Light`], colour and direction are left out.
+    pub(super) layers: Layers,
 }
 
 impl Work for Look<'_> {
@@ -47,9 +50,19 @@ impl Work for Look<'_> {
 
     #[inline(always)]
     fn run<I: Isa>(self) -> u64 {
+        match self.layers {
+            Layers::Light => self.follow::<I, false>(),
+            Layers::LightAndDepth | Layers::All => self.follow::<I, true>(),
+        }
+    }
+}
+
+impl Look<'_> {
+    #[inline(always)]
+    fn follow<I: Isa, const ALL: bool>(self) -> u64 {
         let Some(&first) = self.journeys.first() else { return 0 };
         let (volume, stepping) = (self.volume, self.stepping);
-        let mut sight = Sight {
+        let mut sight = Sight::<ALL> {
             shadows: Lattices::new(volume.layers()),
             fragments: self.fragments.clamp(1, 64) as f32,
             next: 0,
@@ -66,8 +79,8 @@ impl Work for Look<'_> {
     }
 }
 
-/// What rays from the eye have gathered.
-struct Sight<'a> {
+/// What rays from the eye have gathered; of `ALL` layers, or of light alone.
+struct Sight<'a, const ALL: bool> {
     look: Look<'a>,
     next: usize,
     current: [PixelJourney; MOST],
@@ -94,7 +107,7 @@ struct Groups {
     tangent: Vec3Row,
 }
 
-impl Sight<'_> {
+impl<const ALL: bool> Sight<'_, ALL> {
     /// Takes account of the guard hairs that the ray in a lane has passed.
     #[inline(always)]
     fn pass_hairs(&mut self, lane: usize) {
@@ -121,19 +134,21 @@ impl Sight<'_> {
                 to_m: groups.to_m.0[lane] * z_per_m,
                 depth: groups.depth.0[lane],
                 radiance: groups.radiance.lane(lane) * scale,
-                albedo: groups.albedo.lane(lane) * scale,
-                tangent: groups.tangent.lane(lane) * scale,
+                albedo: if ALL { groups.albedo.lane(lane) * scale } else { Vec3::ZERO },
+                tangent: if ALL { groups.tangent.lane(lane) * scale } else { Vec3::ZERO },
             });
         }
         groups.depth.0[lane] = 0.0;
         groups.weight.0[lane] = 0.0;
         groups.radiance.set(lane, Vec3::ZERO);
-        groups.albedo.set(lane, Vec3::ZERO);
-        groups.tangent.set(lane, Vec3::ZERO);
+        if ALL {
+            groups.albedo.set(lane, Vec3::ZERO);
+            groups.tangent.set(lane, Vec3::ZERO);
+        }
     }
 }
 
-impl<I: Isa> Traveller<I> for Sight<'_> {
+impl<I: Isa, const ALL: bool> Traveller<I> for Sight<'_, ALL> {
     #[inline(always)]
     fn next(&mut self, lane: usize) -> Option<Journey> {
         let current = *self.look.journeys.get(self.next)?;
@@ -150,9 +165,8 @@ impl<I: Isa> Traveller<I> for Sight<'_> {
 
     #[inline(always)]
     fn patience(&self) -> F32s<I> {
-        // A step's error grows as the square of its depth, and counts as what is left of the ray behind guard hair and undercoat.
-        let left = F32s::of(&self.through) * F32s::of(&self.veil);
-        (F32s::splat(1.0) / left).sqrt().within(1.0, MOST_PATIENCE)
+        // A step's error grows as the square of its depth, and counts as what is left of the ray.
+        (F32s::splat(1.0) / F32s::of(&self.through)).sqrt().within(1.0, MOST_PATIENCE)
     }
 
     #[inline(always)]
@@ -164,7 +178,7 @@ impl<I: Isa> Traveller<I> for Sight<'_> {
     #[inline(always)]
     fn visit(&mut self, prisms: &Prisms, steps: &Steps<I>, on: Mask<I>) -> Mask<I> {
         let one = F32s::splat(1.0);
-        let shadow = self.shadows.at(steps.b, self.look.volume.level(steps.t), on);
+        let shadow = self.shadows.at(steps.b, self.look.volume.level(steps.t));
         let (albedo, radiance) = self.look.shader.look(self.look.volume, prisms, steps, shadow);
         let through = F32s::of(&self.through);
         let left = through * on.select((-steps.depth).exp_negative(), one);
@@ -177,8 +191,10 @@ impl<I: Isa> Traveller<I> for Sight<'_> {
         groups.depth = (depth + on.keep(steps.depth)).row();
         groups.weight = (F32s::of(&groups.weight) + on.keep(weight)).row();
         groups.radiance = (Vec3s::of(&groups.radiance) + (radiance * weight).keep(on)).rows();
-        groups.albedo = (Vec3s::of(&groups.albedo) + (albedo * weight).keep(on)).rows();
-        groups.tangent = (Vec3s::of(&groups.tangent) + (steps.hair * weight).keep(on)).rows();
+        if ALL {
+            groups.albedo = (Vec3s::of(&groups.albedo) + (albedo * weight).keep(on)).rows();
+            groups.tangent = (Vec3s::of(&groups.tangent) + (steps.hair * weight).keep(on)).rows();
+        }
         // A new virtual fragment at equal parts of what the ray loses in the end.
         let part_after = ((one - left) * self.fragments).floor();
         let part_before = ((one - through) * self.fragments).floor();

@@ -1,7 +1,7 @@
 //! Density and shadow stored per sub-element of one prism.
 
 use super::subelement;
-use crate::math::lanes::{F32s, Isa, MOST, Mask, Row, U32s, Vec3s};
+use crate::math::lanes::{F32s, Isa, MOST, Row, U32s, Vec3s};
 
 /// The largest value that a byte can hold; 1 is byte 64 exactly.
 pub(super) const LARGEST: f32 = (255.0 / 64.0) * (255.0 / 64.0);
@@ -58,26 +58,25 @@ impl<'a> Blocks<'a> {
         self.n.0[i] = (1_u32 << block.d) as f32;
     }
 
-    /// Values of the sub-elements that hold places; 0 in lanes not in `on`.
+    /// Values of the sub-elements that hold places; any value in lanes whose places lie in no prism.
     #[inline(always)]
-    pub fn at<I: Isa>(&self, b: Vec3s<I>, t: F32s<I>, on: Mask<I>) -> F32s<I> {
+    pub fn at<I: Isa>(&self, b: Vec3s<I>, t: F32s<I>) -> F32s<I> {
         let layer = (t * self.layers).floor().within(0.0, self.layers - 1.0);
-        self.fetch(subelement::indices(b, F32s::of(&self.n)), layer, on)
-    }
-
-    #[inline(always)]
-    fn fetch<I: Isa>(&self, i: U32s<I>, layer: F32s<I>, on: Mask<I>) -> F32s<I> {
-        let at = i.times(F32s::splat(self.layers).to_whole()).plus(layer.to_whole()).row();
-        let on = on.bits();
-        let byte =
-            F32s::each(|lane| if on >> lane & 1 != 0 { f32::from(self.blocks[lane][at[lane] as usize]) } else { 0.0 });
-        let root = byte * (1.0 / 255.0);
-        root * root * LARGEST
+        let i = subelement::indices(b, F32s::of(&self.n));
+        let at = i.times(U32s::splat(self.layers as u32)).plus(layer.to_whole()).row();
+        value(U32s::each(|lane| self.blocks[lane].get(at[lane] as usize).map_or(0, |&byte| u32::from(byte))))
     }
 }
 
+/// What bytes stand for.
+#[inline(always)]
+pub(super) fn value<I: Isa>(byte: U32s<I>) -> F32s<I> {
+    let root = byte.signed_to_f32() * (1.0 / 255.0);
+    root * root * LARGEST
+}
+
 /// Square-root coding: small values keep their relative precision.
-pub(super) fn code(value: f32) -> u8 {
+pub(in crate::render) fn code(value: f32) -> u8 {
     ((value / LARGEST).clamp(0.0, 1.0).sqrt() * 255.0 + 0.5) as u8
 }
 

@@ -3,16 +3,20 @@
 //! Values at corners, and linear between them, go on from prism to prism, and begin at nothing on an open border that light
 //! comes in over: what is seen there lies before the first sub-element's middle.
 
-use super::block::{LARGEST, code};
+use super::block::{code, value};
 use crate::math::Vec3;
-use crate::math::lanes::{F32s, Isa, MOST, Mask, Row, U32s, Vec3s};
+use crate::math::lanes::{F32s, Isa, MOST, Row, U32s, Vec3s};
 
-/// Values at the corners of sub-elements in levels: i_l·corners + i.
+/// Values at the corners of sub-elements by corner and level, i·levels + i_l, so that two levels are read at once.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Lattice {
     n: u32,
+    /// [`SPARE`] bytes more than there are values.
     values: Box<[u8]>,
 }
+
+/// Bytes are read in twos.
+const SPARE: usize = 1;
 
 /// Corners of sub-elements in a level split `d` times.
 pub fn corners(d: u32) -> u32 {
@@ -30,13 +34,21 @@ pub fn places(d: u32) -> impl Iterator<Item = Vec3> {
 impl Lattice {
     /// Of `d` subdivisions, from values by level and then in the order of [`places`].
     pub fn new(d: u32, values: &[f32]) -> Self {
-        debug_assert_eq!(values.len() % corners(d) as usize, 0, "one value per corner and level");
-        Self { n: 1 << d, values: values.iter().map(|&v| code(v)).collect() }
+        let per_level = corners(d) as usize;
+        let column = |i: usize| values.iter().skip(i).step_by(per_level);
+        Self::of_codes(d, (0..per_level).flat_map(column).map(|&v| code(v)).collect())
     }
 
-    /// Bytes held.
+    /// Of `d` subdivisions, from what [`code`] gives by corner and level.
+    pub fn of_codes(d: u32, mut codes: Vec<u8>) -> Self {
+        debug_assert_eq!(codes.len() % corners(d) as usize, 0, "one value per corner and level");
+        codes.resize(codes.len() + SPARE, 0);
+        Self { n: 1 << d, values: codes.into() }
+    }
+
+    /// Bytes of its values.
     pub fn bytes(&self) -> usize {
-        self.values.len()
+        self.values.len().saturating_sub(SPARE)
     }
 }
 
@@ -62,9 +74,10 @@ impl<'a> Lattices<'a> {
         self.n.0[i] = lattice.n as f32;
     }
 
-    /// Values at places, linear between the three corners and two levels around them; 0 in lanes not in `on`.
+    /// Values at places, linear between the three corners and two levels around them; any value in lanes whose places lie in
+    /// no prism.
     #[inline(always)]
-    pub fn at<I: Isa>(&self, b: Vec3s<I>, level: F32s<I>, on: Mask<I>) -> F32s<I> {
+    pub fn at<I: Isa>(&self, b: Vec3s<I>, level: F32s<I>) -> F32s<I> {
         let (zero, one) = (F32s::splat(0.0), F32s::splat(1.0));
         let n = F32s::of(&self.n);
         let (u, v) = ((b.y * n).max(zero).min(n), (b.z * n).max(zero).min(n));
@@ -77,30 +90,29 @@ impl<'a> Lattices<'a> {
         let corners = [corner(n, i + shift, j + shift), corner(n, i + 1.0, j), corner(n, i, j + 1.0)];
         let rest = one - fu - fv;
         let weights = Vec3s::new(turned.select(-rest, rest), turned.select(one - fv, fu), turned.select(one - fu, fv));
-        let per_level = ((n + 1.0) * (n + 2.0) * 0.5).to_whole();
         let at = level.within(0.0, self.last_level);
         let low = at.floor().min(F32s::splat(self.last_level - 1.0));
-        let first = low.to_whole().times(per_level);
-        let from = self.level(first, &corners, weights, on);
-        let to = self.level(first.plus(per_level), &corners, weights, on);
+        let levels = U32s::splat(self.last_level as u32 + 1);
+        let [mut from, mut to] = [F32s::splat(0.0); 2];
+        for (corner, weight) in corners.into_iter().zip([weights.x, weights.y, weights.z]) {
+            let two = self.two(corner.times(levels).plus(low.to_whole()));
+            from = from + value(two.and(0xFF)) * weight;
+            to = to + value(two.shr::<8>()) * weight;
+        }
         (from + (at - low) * (to - from)).max(zero)
     }
 
+    /// A byte and, above it, the next one.
     #[inline(always)]
-    fn level<I: Isa>(&self, first: U32s<I>, corners: &[U32s<I>; 3], weights: Vec3s<I>, on: Mask<I>) -> F32s<I> {
-        let a = self.fetch(first.plus(corners[0]), on);
-        let b = self.fetch(first.plus(corners[1]), on);
-        let c = self.fetch(first.plus(corners[2]), on);
-        a * weights.x + b * weights.y + c * weights.z
-    }
-
-    #[inline(always)]
-    fn fetch<I: Isa>(&self, at: U32s<I>, on: Mask<I>) -> F32s<I> {
-        let (at, on) = (at.row(), on.bits());
-        let byte =
-            F32s::each(|lane| if on >> lane & 1 != 0 { f32::from(self.values[lane][at[lane] as usize]) } else { 0.0 });
-        let root = byte * (1.0 / 255.0);
-        root * root * LARGEST
+    fn two<I: Isa>(&self, at: U32s<I>) -> U32s<I> {
+        let at = at.row();
+        U32s::each(|lane| {
+            let values = self.values[lane];
+            match values.get(at[lane] as usize..).and_then(|from| from.first_chunk()) {
+                Some(&two) => u32::from(u16::from_le_bytes(two)),
+                None => 0,
+            }
+        })
     }
 }
 

@@ -53,47 +53,83 @@ pub struct Knot {
 /// A share of a pixel that a hair covers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fragment {
-    /// Depth's bits, then the hair's id: positive floats are ordered as their bits.
-    order: u64,
-    /// Covered share of the pixel, in (0, 1].
-    pub coverage: f32,
-    /// The hair's own opacity there, in [0, 1].
-    pub opacity: f32,
+    /// Depth along the optical axis, m, > 0.
+    z_m: f32,
+    id: u32,
+    /// As [`Parts`].
+    parts: u32,
     /// What it shows: index of a [`Streak`], in the order of drawing.
     pub streak: u32,
-    /// Where it falls.
-    pub pixel: u32,
+}
+
+/// What a hair hides of a pixel, a number but for its lowest eight bits, which hold the hair's own opacity there in 255ths: as much
+/// as it can hide.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Parts(pub u32);
+
+/// The bits of [`Parts`] that hold the opacity.
+const OPACITY: u32 = 0xFF;
+
+impl Parts {
+    /// Of the covered share of the pixel's area and the hair's own opacity, both in [0, 1].
+    #[inline(always)]
+    pub fn new(coverage: f32, opacity: f32) -> Self {
+        Self((coverage * opacity).to_bits() & !OPACITY | (opacity * 255.0 + 0.5) as u32)
+    }
+
+    /// The same in lanes, of a coverage, an opacity and its code.
+    #[inline(always)]
+    pub fn of_lanes<I: Isa>(coverage: F32s<I>, opacity: F32s<I>, code: U32s<I>) -> U32s<I> {
+        (coverage * opacity).to_bits().and(!OPACITY).plus(code)
+    }
+
+    /// The lowest bits of opacities.
+    #[inline(always)]
+    pub fn codes<I: Isa>(opacity: F32s<I>) -> U32s<I> {
+        (opacity * 255.0 + 0.5).to_whole()
+    }
 }
 
 impl Fragment {
-    /// Of hair `id` at depth `z_m` > 0 along the optical axis, on a pixel.
+    /// Of hair `id` at depth `z_m` > 0 along the optical axis.
     #[inline(always)]
-    pub fn new(z_m: f32, id: u32, [coverage, opacity]: [f32; 2], streak: u32, pixel: u32) -> Self {
-        Self { order: u64::from(z_m.to_bits()) << 32 | u64::from(id), coverage, opacity, streak, pixel }
+    pub fn new(z_m: f32, id: u32, Parts(parts): Parts, streak: u32) -> Self {
+        Self { z_m, id, parts, streak }
     }
 
     /// What it hides of the pixel.
     #[inline(always)]
     pub fn alpha(&self) -> f32 {
-        self.coverage * self.opacity
+        f32::from_bits(self.parts & !OPACITY)
+    }
+
+    /// Covers what `other`, the next piece of the same hair, covers too, with its own opacity.
+    #[inline(always)]
+    pub fn join(&mut self, other: &Self) {
+        // Opacities of nothing hide nothing.
+        let [own, others] = [self.parts, other.parts].map(|parts| (parts & OPACITY).max(1) as f32);
+        let alpha = self.alpha();
+        let most = alpha.max(own * (1.0 / 255.0));
+        let joined = (alpha + other.alpha() * (own / others)).min(most);
+        self.parts = joined.to_bits() & !OPACITY | self.parts & OPACITY;
     }
 
     /// Depth along the optical axis, m.
     #[inline(always)]
     pub fn z_m(&self) -> f32 {
-        f32::from_bits((self.order >> 32) as u32)
+        self.z_m
     }
 
     /// Source index of the hair.
     #[inline(always)]
     pub fn id(&self) -> u32 {
-        self.order as u32
+        self.id
     }
 
-    /// Sorts by depth, then id, then in the order of drawing.
+    /// Sorts by depth, then id, then in the order of drawing: positive floats are ordered as their bits.
     #[inline(always)]
     pub fn order(&self) -> (u64, u32) {
-        (self.order, self.streak)
+        (u64::from(self.z_m.to_bits()) << 32 | u64::from(self.id), self.streak)
     }
 }
 
@@ -102,8 +138,6 @@ impl Fragment {
 pub struct Streak {
     /// Radiance of the opaque hair, linear RGB.
     pub radiance: Vec3,
-    /// Where along the hair, in [0, 1].
-    pub s: f32,
     /// Number of the piece among those that were drawn.
     pub stroke: u32,
 }

@@ -66,7 +66,7 @@ impl Column<'_> {
         let Some((volume, t_per_m, lattices)) = &self.clumped else { return mean };
         let t = height_m * *t_per_m;
         let inside = !t.gt(F32s::splat(1.0));
-        inside.select(lattices.at(Vec3s::splat(self.b), volume.level(t.within(0.0, 1.0)), inside), mean)
+        inside.select(lattices.at(Vec3s::splat(self.b), volume.level(t.within(0.0, 1.0))), mean)
     }
 }
 
