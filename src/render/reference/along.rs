@@ -1,31 +1,13 @@
 //! Undercoat and skin along one ray, found as far as somebody looks.
 
 use super::bvh::Ray;
-use super::medium::{Counted, Medium, TOLERANCE};
-use super::quadrature::gauss;
-use super::shell::{Place, Span};
+use super::medium::Medium;
+use super::piece::Piece;
+use super::shell::Place;
 use super::skin::{Plane, Skin};
-
-/// Largest optical depth of a piece, so that its middle stands for all of it.
-const DEEPEST: f64 = 0.25;
 
 /// Share of the distance by which skin may lie farther along a ray than along one of the same part of a pixel.
 const GRAZING: f64 = 0.02;
-
-/// A stretch of undercoat, as dense throughout.
-#[derive(Clone, Copy, Debug)]
-pub struct Piece {
-    /// From, m.
-    pub from_m: f64,
-    /// To, m.
-    pub to_m: f64,
-    /// Optical depth.
-    pub depth: f64,
-    /// Its middle.
-    pub place: Place,
-    /// How much of it has been seen.
-    pub seen: f64,
-}
 
 /// What lies along a ray.
 #[derive(Clone, Debug)]
@@ -40,7 +22,8 @@ pub struct Along {
     /// How much of the skin has been seen.
     pub skin_seen: f64,
     done_m: f64,
-    spans: Vec<Span>,
+    /// Whether the last stretch was empty.
+    empty: bool,
 }
 
 impl Along {
@@ -48,7 +31,7 @@ impl Along {
     pub fn new(ray: Ray, skin: &Skin) -> Self {
         let met = skin.meet(&ray, 0.0);
         let plane = met.map(|(_, place)| skin.plane(place.triangle));
-        Self { ray, skin: met, plane, pieces: Vec::new(), skin_seen: 0.0, done_m: 0.0, spans: Vec::new() }
+        Self { ray, skin: met, plane, pieces: Vec::new(), skin_seen: 0.0, done_m: 0.0, empty: true }
     }
 
     /// Where the skin ends it, m.
@@ -77,8 +60,7 @@ impl Along {
             let piece = &mut self.pieces[view.next];
             let (from_m, end_m) = (view.at_m.max(piece.from_m), to_m.min(piece.to_m));
             if end_m > from_m {
-                let depth = piece.depth * (end_m - from_m) / (piece.to_m - piece.from_m);
-                let share = view.take(-libm::expm1(-depth));
+                let share = view.take(piece.blocks(from_m, end_m));
                 piece.seen += share;
                 view.depth_m += share * 0.5 * (from_m + end_m);
                 view.at_m = end_m;
@@ -97,35 +79,15 @@ impl Along {
     /// Finds a stretch more.
     fn go_on(&mut self, medium: &Medium<'_>, to_m: f64) {
         // Boxes are looked for only where the last stretch was empty.
-        if self.spans.is_empty() {
+        if self.empty {
             self.done_m = medium.slabs.first(&self.ray, self.done_m).max(self.done_m);
         }
         if self.done_m >= to_m {
             return;
         }
         let end_m = (self.done_m + medium.stride_m()).min(self.far_m());
-        let Self { ray, pieces, spans, .. } = self;
-        medium.spans(ray, self.done_m, end_m, Counted::Undercoat, spans);
-        medium.pieces(ray, spans, [self.done_m, end_m], Counted::Undercoat, TOLERANCE, |[from_m, to_m], depth| {
-            halve(medium, ray, spans, [from_m, to_m], depth, pieces);
-            true
-        });
+        self.empty = !medium.pieces(&self.ray, [self.done_m, end_m], &mut self.pieces);
         self.done_m = end_m;
-    }
-}
-
-fn halve(medium: &Medium<'_>, ray: &Ray, spans: &[Span], [from_m, to_m]: [f64; 2], depth: f64, out: &mut Vec<Piece>) {
-    let middle_m = 0.5 * (from_m + to_m);
-    let here = || spans.iter().filter(|span| span.from_m <= middle_m && span.to_m >= middle_m);
-    if depth <= DEEPEST {
-        if let Some(place) = medium.place(here(), ray.direction, middle_m) {
-            out.push(Piece { from_m, to_m, depth, place, seen: 0.0 });
-        }
-        return;
-    }
-    for half in [[from_m, middle_m], [middle_m, to_m]] {
-        let depth = gauss(half[0], half[1], |at_m| medium.extinctions(here(), ray.direction, at_m, Counted::Undercoat));
-        halve(medium, ray, spans, half, depth, out);
     }
 }
 

@@ -14,12 +14,19 @@ pub struct Ray {
     /// Unit vector.
     pub direction: DVec3,
     inverse: DVec3,
+    /// Unit vectors across it.
+    across: [DVec3; 2],
 }
 
 impl Ray {
     /// From a point along a unit vector.
     pub fn new(origin_m: DVec3, direction: DVec3) -> Self {
-        Self { origin_m, direction, inverse: direction.recip() }
+        Self { origin_m, direction, inverse: direction.recip(), across: direction.any_orthonormal_pair().into() }
+    }
+
+    /// A vector in its own axes: two across it, the third along it.
+    pub fn see(&self, v: DVec3) -> DVec3 {
+        DVec3::new(v.dot(self.across[0]), v.dot(self.across[1]), v.dot(self.direction))
     }
 
     /// The point `at_m` along it.
@@ -66,45 +73,33 @@ struct Node {
     count: u32,
 }
 
-/// The plane piece between two rays from one eye, and how far it reaches.
+/// What lies between four planes through one eye.
 #[derive(Clone, Copy, Debug)]
-pub struct Wedge {
+pub struct Beam {
     eye_m: DVec3,
-    /// Out of its plane, and inwards from both rays.
-    normals: [DVec3; 3],
-    /// Its middle direction, unit.
+    /// Inwards.
+    normals: [DVec3; 4],
+    /// Its middle direction.
     ahead: DVec3,
-    /// Where it ends along the middle direction, m.
-    far_m: f64,
 }
 
-impl Wedge {
-    /// Between rays along `from` and `to`, which are not one, up to a distance.
-    pub fn new(eye_m: DVec3, from: DVec3, to: DVec3, far_m: f64) -> Self {
-        let plane = from.cross(to).normalize();
-        let ahead = (from + to).normalize();
-        Self { eye_m, normals: [plane, plane.cross(from), to.cross(plane)], ahead, far_m }
-    }
-
-    /// How far along its middle direction a point is, m.
-    pub fn ahead_m(&self, point_m: DVec3) -> f64 {
-        (point_m - self.eye_m).dot(self.ahead)
-    }
-
-    /// How far beside its plane a point is, m, with a sign.
-    pub fn beside_m(&self, point_m: DVec3) -> f64 {
-        (point_m - self.eye_m).dot(self.normals[0])
+impl Beam {
+    /// Between planes through four directions, each through two that follow one another, around the direction `ahead`.
+    pub fn new(eye_m: DVec3, corners: [DVec3; 4], ahead: DVec3) -> Self {
+        let middle: DVec3 = corners.into_iter().sum();
+        let normals = [0, 1, 2, 3].map(|i| {
+            let normal = corners[i].cross(corners[(i + 1) % 4]);
+            if normal.dot(middle) < 0.0 { -normal } else { normal }
+        });
+        Self { eye_m, normals, ahead }
     }
 
     /// Whether it may meet a box.
     pub fn meets(&self, bounds: &Bounds) -> bool {
         let middle = 0.5 * (bounds.low + bounds.high) - self.eye_m;
         let half = 0.5 * (bounds.high - bounds.low);
-        let [plane, left, right] = self.normals;
-        plane.dot(middle).abs() <= plane.abs().dot(half)
-            && left.dot(middle) >= -left.abs().dot(half)
-            && right.dot(middle) >= -right.abs().dot(half)
-            && self.ahead.dot(middle) - self.ahead.abs().dot(half) <= self.far_m
+        let reaches = |normal: &DVec3| normal.dot(middle) >= -normal.abs().dot(half);
+        self.normals.iter().all(reaches) && reaches(&self.ahead)
     }
 }
 
@@ -153,15 +148,15 @@ impl Bvh {
         }
     }
 
-    /// Calls `visit` for every item in leaves whose boxes a wedge meets.
-    pub fn visit_wedge(&self, wedge: &Wedge, mut visit: impl FnMut(u32)) {
+    /// Calls `visit` for every item in leaves whose boxes a beam meets.
+    pub fn visit_beam(&self, beam: &Beam, mut visit: impl FnMut(u32)) {
         let mut stack = [0_u32; 64];
         let mut depth = usize::from(!self.nodes.is_empty());
         while depth > 0 {
             depth -= 1;
             let index = stack[depth] as usize;
             let node = &self.nodes[index];
-            if !wedge.meets(&node.bounds) {
+            if !beam.meets(&node.bounds) {
                 continue;
             }
             if node.count > 0 {

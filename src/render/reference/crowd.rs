@@ -5,6 +5,19 @@ use crate::fur::undercoat::Undercoat;
 use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, MOST, Row, Vec3Row, Vec3s};
 
+/// A point of the shell, and what stands under it.
+#[derive(Clone, Copy, Debug)]
+pub struct Ground {
+    /// The skin at rest, m.
+    pub root_m: Vec3,
+    /// Unit normal there.
+    pub normal: Vec3,
+    /// How strongly hair clumps there.
+    pub clump: f32,
+    /// Height of the point.
+    pub t: f32,
+}
+
 /// Points of the shell, up to as many as there are lanes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Points {
@@ -21,10 +34,10 @@ pub struct Points {
 
 impl Points {
     /// Adds a point; full at [`MOST`].
-    pub fn push(&mut self, root_m: Vec3, normal: Vec3, clump: f32, t: f32) {
-        self.root_m.set(self.count, root_m);
-        self.normal.set(self.count, normal);
-        (self.clump.0[self.count], self.t.0[self.count]) = (clump, t);
+    pub fn push(&mut self, point: &Ground) {
+        self.root_m.set(self.count, point.root_m);
+        self.normal.set(self.count, point.normal);
+        (self.clump.0[self.count], self.t.0[self.count]) = (point.clump, point.t);
         self.count += 1;
     }
 
@@ -38,6 +51,40 @@ impl Points {
         let found = lanes::run(Crowding { points: self, undercoat, nearby });
         self.count = 0;
         found
+    }
+}
+
+/// Sums over crowded undercoat, asked for as many points at a time as there are lanes.
+#[derive(Debug)]
+pub struct Crowd<'p> {
+    undercoat: &'p Undercoat,
+    nearby: &'p mut Nearby,
+    points: Points,
+    /// What each point counts for where undercoat is as dense as in the mean.
+    weights: [f64; MOST],
+}
+
+impl<'p> Crowd<'p> {
+    /// An empty sum.
+    pub fn new(undercoat: &'p Undercoat, nearby: &'p mut Nearby) -> Self {
+        Self { undercoat, nearby, points: Points::default(), weights: [0.0; MOST] }
+    }
+
+    /// Adds a point; gives what those that are known by now count for, each once.
+    pub fn push(&mut self, point: &Ground, weight: f64) -> f64 {
+        self.weights[self.points.count] = weight;
+        self.points.push(point);
+        if self.points.is_full() { self.rest() } else { 0.0 }
+    }
+
+    /// What those count for that have not been counted yet.
+    pub fn rest(&mut self) -> f64 {
+        let count = self.points.count;
+        if count == 0 {
+            return 0.0;
+        }
+        let crowding = self.points.crowding(self.undercoat, self.nearby);
+        self.weights[..count].iter().zip(crowding).map(|(weight, crowding)| weight * f64::from(crowding)).sum()
     }
 }
 

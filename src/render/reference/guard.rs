@@ -2,6 +2,7 @@
 
 use super::bvh::{Bounds, Bvh, Ray};
 use super::cone;
+use super::lens::Pixel;
 use super::line::Line;
 use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;
@@ -19,6 +20,19 @@ pub struct Crossing {
     pub strand: u32,
     /// Where along the hair, in its points.
     pub knot: f64,
+    /// Which piece of it.
+    pub piece: u32,
+}
+
+/// A piece of hair that may be seen in a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// Between which columns, and which rows, it lies.
+    pub across: [[f64; 2]; 2],
+    /// No ray enters it before, m.
+    pub near_m: f64,
+    /// The hair.
+    pub strand: u32,
     /// Which piece of it.
     pub piece: u32,
 }
@@ -42,6 +56,8 @@ pub struct Guard<'a> {
     strands: &'a Strands,
     skin: &'a Mesh,
     bvh: Bvh,
+    /// Transparency of the tip over e^k − 1.
+    transparency: f64,
 }
 
 impl<'a> Guard<'a> {
@@ -56,37 +72,51 @@ impl<'a> Guard<'a> {
                 Bounds::of(strands.points_m[at..=at + 1].iter().map(|p| p.as_dvec3()), radius_m)
             })
             .collect();
-        Self { strands, skin, bvh: Bvh::new(&bounds) }
+        let profile = &strands.profile;
+        let transparency = f64::from(profile.tip_transparency) / libm::expm1(f64::from(profile.tip_exponent));
+        Self { strands, skin, bvh: Bvh::new(&bounds), transparency }
     }
 
-    /// The pieces that are seen on a line nearer than `far_m`, from its beginning to its end.
-    pub fn strips(&self, line: &Line, far_m: f64, out: &mut Vec<Strip>) {
+    /// The pieces that may be seen in a pixel, nearest first.
+    pub fn candidates(&self, pixel: &Pixel<'_>, out: &mut Vec<Candidate>) {
         out.clear();
-        let wedge = line.wedge(far_m);
         let pieces = self.strands.points_per_strand as u32 - 1;
-        self.bvh.visit_wedge(&wedge, |item| {
+        self.bvh.visit_beam(&pixel.beam(), |item| {
             let (strand, piece) = (item / pieces, item % pieces);
-            let ([from_m, to_m], radius_m) = self.ends(strand, piece);
-            let near_m = wedge.ahead_m(from_m).min(wedge.ahead_m(to_m)) - radius_m[0].max(radius_m[1]);
-            let beside = [from_m, to_m].map(|end_m| wedge.beside_m(end_m));
-            let apart = beside[0] * beside[1] > 0.0 && (0..2).all(|i| beside[i].abs() > radius_m[i]);
-            if near_m >= far_m || apart {
-                return;
+            let (ends_m, radius_m) = self.ends(strand, piece);
+            let [(near_m, a), (far_m, b)] = [0, 1].map(|i| pixel.bounds(ends_m[i], radius_m[i]));
+            let across = [0, 1].map(|i| [a[i][0].min(b[i][0]), a[i][1].max(b[i][1])]);
+            if across.iter().all(|&[from, to]| from < 1.0 && to > 0.0) {
+                out.push(Candidate { across, near_m: near_m.min(far_m), strand, piece });
             }
-            let Some([from, to]) = line.extent(from_m, to_m, radius_m) else { return };
+        });
+        let key = |c: &Candidate| (self.id(c.strand), c.piece);
+        out.sort_unstable_by(|a, b| a.near_m.total_cmp(&b.near_m).then_with(|| key(a).cmp(&key(b))));
+    }
+
+    /// Of candidates nearer than `far_m`, those that are seen on the line at `at`, a column or a row, from its beginning to its end.
+    pub fn strips(&self, line: &Line, column: bool, at: f64, some: &[Candidate], far_m: f64, out: &mut Vec<Strip>) {
+        out.clear();
+        for candidate in some.iter().take_while(|candidate| candidate.near_m < far_m) {
+            let Candidate { across, near_m, strand, piece } = *candidate;
+            let [from, to] = across[usize::from(!column)];
+            if at < from || at > to {
+                continue;
+            }
+            let ([from_m, to_m], radius_m) = self.ends(strand, piece);
+            let Some([from, to]) = line.extent(from_m, to_m, radius_m) else { continue };
             let x = [from.max(0.0), to.min(1.0)];
             if x[0] < x[1] {
                 out.push(Strip { x, near_m, strand, piece });
             }
-        });
-        out.sort_unstable_by(|a, b| {
-            a.x[0].total_cmp(&b.x[0]).then((self.id(a.strand), a.piece).cmp(&(self.id(b.strand), b.piece)))
-        });
+        }
+        // The nearer of two that begin as one goes first.
+        out.sort_by(|a, b| a.x[0].total_cmp(&b.x[0]));
     }
 
-    /// From end to end of a strip's piece, unit.
-    pub fn way(&self, strip: &Strip) -> DVec3 {
-        let ([from_m, to_m], _) = self.ends(strip.strand, strip.piece);
+    /// From end to end of a candidate, unit.
+    pub fn way(&self, candidate: &Candidate) -> DVec3 {
+        let ([from_m, to_m], _) = self.ends(candidate.strand, candidate.piece);
         (to_m - from_m).normalize_or_zero()
     }
 
@@ -109,8 +139,7 @@ impl<'a> Guard<'a> {
     pub fn opacity(&self, knot: f64) -> f64 {
         let profile = &self.strands.profile;
         let k = f64::from(profile.tip_exponent);
-        let share = libm::expm1(k * self.s(knot)) / libm::expm1(k);
-        1.0 - share * f64::from(profile.tip_transparency)
+        1.0 - libm::expm1(k * self.s(knot)) * self.transparency
     }
 
     /// Out of the skin at a hair's root, of no particular length.

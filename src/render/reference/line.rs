@@ -1,6 +1,6 @@
 //! A row or column of a pixel, as the eye sees it.
 
-use super::bvh::{Ray, Wedge};
+use super::bvh::Ray;
 use super::cone;
 use crate::math::DVec3;
 
@@ -19,11 +19,6 @@ impl Line {
     /// The ray at `x`.
     pub fn ray(&self, x: f64) -> Ray {
         Ray::new(self.eye_m, (self.base + self.step * x).normalize())
-    }
-
-    /// All of it, up to a distance.
-    pub fn wedge(&self, far_m: f64) -> Wedge {
-        Wedge::new(self.eye_m, self.base, self.base + self.step, far_m)
     }
 
     /// Where it begins and ceases to meet a round cone.

@@ -1,10 +1,11 @@
 //! What fills the shell, at every point exactly: undercoat with its crowding, and guard hair in the mean.
 
 use super::bvh::Ray;
-use super::crowd::Points;
+use super::crowd::{Crowd, Ground, Points};
 use super::kind::{BRIM, Kind};
-use super::quadrature::{gauss, integrate};
-use super::shell::{Place, Slabs, Span, Spot};
+use super::piece::{self, Piece};
+use super::shell::{Place, Slabs, Spot};
+use super::sight::{Sight, Spots};
 use crate::fur::groom::clump::Nearby;
 use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::lanes::MOST;
@@ -13,14 +14,19 @@ use crate::render::pelt::Pelt;
 use crate::render::shell::Shell;
 use std::cell::RefCell;
 
-/// Where Gauss's and Kronrod's optical depths of a stretch agree so far, the latter's error is far less.
-pub const TOLERANCE: f64 = 0.1;
+/// Optical depth of a piece of undercoat, where that is as dense as in the mean: its middle stands for all of it.
+const DEEPEST: f64 = 0.15;
 
-/// The same for shadows, of which many make up a pixel.
-const ROUGHLY: f64 = 0.2;
+/// Optical depth from which on a shadow is followed in short steps, not to be followed too far.
+const DIM: f64 = 3.0;
 
-/// Of the longest stretch, shorter ones than this share are smooth enough for Gauss's rule alone.
-const SHORT: f64 = 0.3;
+/// Of the undercoat's height, the length for which one point stands where no pattern asks for a shorter one.
+const SMOOTH: f64 = 0.1;
+
+/// Gauss's rule of three points: weights in the middle and on both sides of it, where an interval is 2 long, and how far the
+/// sides are off.
+const GAUSS: [f64; 2] = [8.0 / 9.0, 5.0 / 9.0];
+const OUTER: f64 = 0.774_596_669_241_483_4;
 
 /// Slabs of the shell up to the undercoat's tips, and from there to the guard hair's.
 const SLABS: [usize; 2] = [6, 3];
@@ -44,7 +50,7 @@ pub struct Medium<'a> {
     guard: Option<Kind>,
     /// Twice the area of each triangle at rest, m².
     twice_area_m2: Vec<f64>,
-    /// Longest stretch that is integrated at once, m.
+    /// Length for which one point of undercoat stands, m.
     detail_m: f64,
 }
 
@@ -66,7 +72,7 @@ impl<'a> Medium<'a> {
         if height_m <= 0.0 {
             return None;
         }
-        let detail_m = 5.0 * f64::from(undercoat.detail_m());
+        let detail_m = f64::from(undercoat.detail_m()).min(SMOOTH * height_m);
         let rest_normals = pelt.skin.rest_m.as_ref().map(|_| pelt.skin.at_rest().smooth_normals());
         let shell = Shell::new(pelt.skin, pelt.fields, undercoat);
         let undercoat = pelt.undercoat.map(|fibre| Kind::undercoat(fibre, height_m));
@@ -109,67 +115,12 @@ impl<'a> Medium<'a> {
         self.slabs.up_m(place).normalize_or(DVec3::Y)
     }
 
-    /// Blocked shares per length at places of a ray that lie in some spans, 1/m.
-    pub fn extinctions<'s, const N: usize>(
-        &self,
-        spans: impl Iterator<Item = &'s Span>,
-        direction: DVec3,
-        at_m: [f64; N],
-        counted: Counted,
-    ) -> [f64; N] {
-        let mut found = [0.0; N];
-        NEARBY.with_borrow_mut(|nearby| {
-            let mut points = Points::default();
-            let mut waiting = [(0, 0.0); MOST];
-            let mut count = 0;
-            let mut crowd = |points: &mut Points, waiting: &[(usize, f64)], found: &mut [f64; N]| {
-                let crowding = points.crowding(&self.shell.undercoat, nearby);
-                for (&(i, bare), crowding) in waiting.iter().zip(crowding) {
-                    found[i] += bare * f64::from(crowding);
-                }
-            };
-            for span in spans {
-                for (i, &at_m) in at_m.iter().enumerate() {
-                    for spot in span.sight.spots(at_m) {
-                        let [bare, guard] = self.uncrowded(&spot, direction, counted);
-                        found[i] += guard;
-                        if bare > 0.0 {
-                            self.push(&spot.place, &mut points);
-                            waiting[count] = (i, bare);
-                            count += 1;
-                        }
-                        if points.is_full() {
-                            crowd(&mut points, &waiting, &mut found);
-                            count = 0;
-                        }
-                    }
-                }
-            }
-            if count > 0 {
-                crowd(&mut points, &waiting[..count], &mut found);
-            }
-        });
-        found
-    }
-
-    /// Adds a place to those whose crowding is asked for.
-    fn push(&self, place: &Place, points: &mut Points) {
-        let foot_m = self.shell.skin.rest_corners_m(place.triangle as usize).map(|p| p.as_dvec3());
-        let root_m = foot_m[0] * place.b.x + foot_m[1] * place.b.y + foot_m[2] * place.b.z;
-        let normals = self.rest_normals.as_deref().unwrap_or(self.normals);
-        let normal = self.vector(normals, place).normalize_or(DVec3::Y);
-        let clump = self.scalar(&self.shell.fields.clump, place);
-        points.push(root_m.as_vec3(), normal.as_vec3(), clump as f32, place.t as f32);
-    }
-
     /// What undercoat blocks per length of a ray where it is as dense as in the mean, and what guard hair does, 1/m.
-    fn uncrowded(&self, spot: &Spot, direction: DVec3, counted: Counted) -> [f64; 2] {
-        let Spot { place, up_m, volume_m3 } = spot;
-        let height_m = up_m.length();
-        let cosine = up_m.dot(direction) / height_m;
+    fn uncrowded(&self, spot: &Spot, counted: Counted) -> [f64; 2] {
+        let Spot { place, height_m, cosine, volume_m3 } = *spot;
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
         let standing =
-            self.scalar(&self.shell.fields.density, place) * self.twice_area_m2[place.triangle as usize] / volume_m3;
+            self.scalar(&self.shell.fields.density, &place) * self.twice_area_m2[place.triangle as usize] / volume_m3;
         let of = |kind: &Option<Kind>| {
             let blocked =
                 kind.as_ref().map_or(0.0, |kind| kind.per_m2 * kind.extinction(place.t, height_m, sine, cosine));
@@ -179,91 +130,140 @@ impl<'a> Medium<'a> {
         [of(&self.undercoat), if counted == Counted::Both { of(&self.guard) } else { 0.0 }]
     }
 
-    /// Where a ray is in slabs that hold what is counted, between two distances.
-    pub fn spans(&self, ray: &Ray, from_m: f64, to_m: f64, counted: Counted, out: &mut Vec<Span>) {
-        let below = match counted {
-            Counted::Undercoat if self.undercoat.is_none() => return out.clear(),
-            Counted::Undercoat => 1.0,
-            Counted::Both => f64::INFINITY,
-        };
-        self.slabs.spans(ray, from_m, to_m, below, out);
+    /// Puts undercoat along a ray between two distances after `out`, in short pieces; tells whether there is shell at all.
+    pub fn pieces(&self, ray: &Ray, [from_m, to_m]: [f64; 2], out: &mut Vec<Piece>) -> bool {
+        let Some(below) = self.below(Counted::Undercoat) else { return false };
+        let (first, mut any) = (out.len(), false);
+        self.slabs.visit(ray, [from_m, to_m], below, |sight, _, part, middle| {
+            any = true;
+            self.cut(sight, part, middle, out);
+        });
+        NEARBY.with_borrow_mut(|nearby| {
+            for some in out[first..].chunks_mut(MOST) {
+                let mut points = Points::default();
+                some.iter().for_each(|piece| points.push(&self.ground(&piece.place)));
+                let crowding = points.crowding(&self.shell.undercoat, nearby);
+                some.iter_mut().zip(crowding).for_each(|(piece, crowding)| piece.depth *= f64::from(crowding));
+            }
+        });
+        piece::put_in_order(out, first);
+        any
     }
 
-    /// Cuts a ray between two distances where spans begin and end and into short pieces, and calls `visit` with each piece
-    /// and its optical depth until that returns false.
-    pub fn pieces(
-        &self,
-        ray: &Ray,
-        spans: &[Span],
-        [from_m, to_m]: [f64; 2],
-        counted: Counted,
-        tolerance: f64,
-        mut visit: impl FnMut([f64; 2], f64) -> bool,
-    ) {
-        let mut at_m = from_m;
-        while at_m < to_m {
-            let ends = spans.iter().flat_map(|span| [span.from_m, span.to_m]).filter(|&end| end > at_m);
-            let end_m = ends.fold(to_m, f64::min);
-            let middle = 0.5 * (at_m + end_m);
-            let here = |span: &&Span| span.from_m <= middle && span.to_m >= middle;
-            // Above undercoat, nothing is small.
-            let detailed = spans.iter().filter(here).any(|span| self.slabs.slab(span.slab).1[0] < 1.0);
-            let wanted = if detailed { (end_m - at_m) / self.detail_m } else { 1.0 };
-            let parts = wanted.ceil().clamp(1.0, 64.0);
-            let step = (end_m - at_m) / parts;
-            if spans.iter().any(|span| here(&span)) {
-                for part in 0..parts as usize {
-                    let begin = at_m + step * part as f64;
-                    let depth = if detailed && step > SHORT * self.detail_m {
-                        integrate(begin, begin + step, tolerance, &mut |at_m| {
-                            self.extinctions(spans.iter().filter(here), ray.direction, at_m, counted)
-                        })
-                    } else {
-                        gauss(begin, begin + step, |at_m| {
-                            self.extinctions(spans.iter().filter(here), ray.direction, at_m, counted)
-                        })
-                    };
-                    if !visit([begin, begin + step], depth) {
-                        return;
-                    }
+    /// Cuts part of a slab into pieces short enough for their middles to stand for them, as deep as where undercoat is as dense
+    /// as in the mean.
+    fn cut(&self, sight: &Sight, [from_m, to_m]: [f64; 2], middle: &Spots, out: &mut Vec<Piece>) {
+        let bare = |spots: &Spots| -> [f64; 3] {
+            spots.map(|spot| spot.map_or(0.0, |spot| self.uncrowded(&spot, Counted::Undercoat)[0]))
+        };
+        let dense: f64 = bare(middle).iter().sum();
+        let wanted = (to_m - from_m) * (dense / DEEPEST).max(1.0 / self.detail_m);
+        let parts = wanted.ceil().clamp(1.0, 256.0);
+        let step_m = (to_m - from_m) / parts;
+        for part in 0..parts as usize {
+            let from_m = from_m + step_m * part as f64;
+            let spots = if parts == 1.0 { *middle } else { sight.spots(from_m + 0.5 * step_m) };
+            for (spot, bare) in spots.iter().zip(bare(&spots)) {
+                if let Some(Spot { place, .. }) = *spot {
+                    out.push(Piece {
+                        from_m,
+                        to_m: from_m + step_m,
+                        depth: bare * step_m,
+                        opacity: 0.0,
+                        place,
+                        seen: 0.0,
+                    });
                 }
             }
-            at_m = end_m;
         }
     }
 
     /// Optical depth of hair along a ray from `from_m` up to `to_m`, or as much of it as passes `enough`.
     pub fn depth_along(&self, ray: &Ray, from_m: f64, to_m: f64, counted: Counted, enough: f64) -> f64 {
-        let mut spans = Vec::new();
-        let (mut sum, mut at_m) = (0.0, from_m);
+        let Some(below) = self.below(counted) else { return 0.0 };
+        let (mut sum, mut at_m, mut empty) = (0.0, from_m, true);
         while sum < enough {
             // Boxes are looked for only where the last stretch was empty.
-            if spans.is_empty() {
-                at_m = self.slabs.first(ray, at_m);
+            if empty {
+                at_m = self.slabs.first(ray, at_m).max(at_m);
             }
             if at_m >= to_m {
                 break;
             }
-            let end_m = (at_m + 4.0 * self.stride_m()).min(to_m);
-            self.spans(ray, at_m, end_m, counted, &mut spans);
-            self.pieces(ray, &spans, [at_m, end_m], counted, ROUGHLY, |_, depth| {
-                sum += depth;
-                sum < enough
+            // Where it gets dark, little more will be asked for.
+            let strides = if at_m == from_m || sum > DIM { 1.5 } else { 4.0 };
+            let end_m = (at_m + strides * self.stride_m()).min(to_m);
+            empty = true;
+            NEARBY.with_borrow_mut(|nearby| {
+                let mut crowd = Crowd::new(&self.shell.undercoat, nearby);
+                self.slabs.visit(ray, [at_m, end_m], below, |sight, slab, part, middle| {
+                    empty = false;
+                    sum += self.depth_of(sight, self.slabs.slab(slab).1[0] < 1.0, part, middle, counted, &mut crowd);
+                });
+                sum += crowd.rest();
             });
             at_m = end_m;
         }
         sum
     }
 
+    /// Optical depth of part of a slab, some of which may still wait in `crowd`.
+    fn depth_of(
+        &self,
+        sight: &Sight,
+        detailed: bool,
+        [from_m, to_m]: [f64; 2],
+        middle: &Spots,
+        counted: Counted,
+        crowd: &mut Crowd<'_>,
+    ) -> f64 {
+        let length_m = to_m - from_m;
+        let mut sum = 0.0;
+        let mut add = |spots: &Spots, weight_m: f64| {
+            for spot in spots.iter().flatten() {
+                let [bare, guard] = self.uncrowded(spot, counted);
+                sum += guard * weight_m;
+                if bare > 0.0 {
+                    sum += crowd.push(&self.ground(&spot.place), bare * weight_m);
+                }
+            }
+        };
+        // Above undercoat, nothing is small.
+        let parts = if detailed { (length_m / (3.0 * self.detail_m)).ceil().clamp(1.0, 64.0) } else { 1.0 };
+        let half_m = 0.5 * length_m / parts;
+        for part in 0..parts as usize {
+            let middle_m = from_m + half_m * (2 * part + 1) as f64;
+            if parts == 1.0 {
+                add(middle, half_m * GAUSS[0]);
+            } else {
+                add(&sight.spots(middle_m), half_m * GAUSS[0]);
+            }
+            for side in [-1.0, 1.0] {
+                add(&sight.spots(middle_m + side * half_m * OUTER), half_m * GAUSS[1]);
+            }
+        }
+        sum
+    }
+
+    /// What crowding over a place depends on.
+    fn ground(&self, place: &Place) -> Ground {
+        let foot_m = self.shell.skin.rest_corners_m(place.triangle as usize).map(|p| p.as_dvec3());
+        let root_m = foot_m[0] * place.b.x + foot_m[1] * place.b.y + foot_m[2] * place.b.z;
+        let normals = self.rest_normals.as_deref().unwrap_or(self.normals);
+        let normal = self.vector(normals, place).normalize_or(DVec3::Y);
+        let clump = self.scalar(&self.shell.fields.clump, place);
+        Ground { root_m: root_m.as_vec3(), normal: normal.as_vec3(), clump: clump as f32, t: place.t as f32 }
+    }
+
+    fn below(&self, counted: Counted) -> Option<f64> {
+        match counted {
+            Counted::Undercoat => self.undercoat.is_some().then_some(1.0),
+            Counted::Both => Some(f64::INFINITY),
+        }
+    }
+
     /// How far a ray is followed at a time, m.
     pub fn stride_m(&self) -> f64 {
         0.25 * f64::from(self.shell.undercoat.height_m)
-    }
-
-    /// The place that a ray is at, in spans that hold it: the densest where prisms fold.
-    pub fn place<'s>(&self, spans: impl Iterator<Item = &'s Span>, direction: DVec3, at_m: f64) -> Option<Place> {
-        let dense = |spot: &Spot| self.uncrowded(spot, direction, Counted::Undercoat)[0];
-        let densest = spans.flat_map(|span| span.sight.spots(at_m)).max_by(|a, b| dense(a).total_cmp(&dense(b)));
-        densest.map(|spot| spot.place)
     }
 }

@@ -1,7 +1,7 @@
 //! The renderer's yardstick: f64, by another algorithm, slow and plain (`docs/steps/reference.md`).
 //!
 //! Some lines per pixel, each cut where hairs begin and cease to be seen; along a ray through each part, all that lies there is
-//! put together in exact order, optical depths integrated until two rules agree. What it shares with the renderer is the
+//! put together in exact order. What it shares with the renderer is the
 //! model: fields, crowding, and the shading formulas.
 
 pub mod along;
@@ -10,12 +10,15 @@ pub mod cone;
 pub mod crowd;
 pub mod guard;
 pub mod kind;
+pub mod lens;
 pub mod line;
 pub mod medium;
-pub mod quadrature;
+pub mod piece;
 pub mod shade;
 pub mod shell;
+pub mod sight;
 pub mod skin;
+pub mod sum;
 pub mod trace;
 
 use super::pelt::{Lighting, Pelt};
@@ -27,11 +30,12 @@ use crate::fur::undercoat::Pattern;
 use crate::math::DVec3;
 use crate::math::hash::{combine, unit_f64};
 use guard::Guard;
-use line::Line;
+use lens::Lens;
 use medium::Medium;
 use rayon::prelude::*;
 use shade::{Look, Shader};
 use skin::Skin;
+use sum::{Pick, Sum, luminance, variance};
 use trace::{Scratch, Seen, Tracer};
 
 /// How much work a reference is worth.
@@ -51,10 +55,10 @@ pub struct Settings {
 }
 
 /// Lines per pixel, at first.
-pub const LINES: u32 = 8;
+pub const LINES: u32 = 16;
 
 /// Standard error of lightness above which a pixel is given more.
-const LIGHTNESS_ERROR: f64 = 0.3;
+const LIGHTNESS_ERROR: f64 = 0.15;
 
 /// Times as many as at first that it is given at most.
 const MOST: f64 = 4.0;
@@ -74,7 +78,7 @@ impl Settings {
 
 /// What takes less than this share of a line is shaded as seldom as it takes less, and then counts for this share: guard hair
 /// and skin, and undercoat, whose shadows are not kept.
-const LEAST: [f64; 2] = [2e-3, 0.03];
+const LEAST: [f64; 2] = [2e-3, 0.01];
 
 /// Renders a picture: what [`super::picture::draw`] should have drawn.
 ///
@@ -126,17 +130,17 @@ impl Reference<'_> {
         if count == 0 {
             return Sum::default();
         }
-        let corner = [x as f64, y as f64];
-        let column = self.tracer.lies_across(&self.lens.row(corner, 0.5), &self.lens.column(corner, 0.5), scratch);
-        let mut picks = [0_usize, 1]
-            .map(|kind| Pick { least: LEAST[kind], passed: LEAST[kind] * unit_f64(combine(key, !(kind as u64))) });
-        let mut sum = Sum { lines: count as f64, ..Sum::default() };
-        let mut before = None;
+        let pixel = self.lens.pixel([x as f64, y as f64]);
+        let column = self.tracer.begin(&pixel, scratch);
+        let mut picks = [0_usize, 1].map(|kind| Pick::new(LEAST[kind], unit_f64(combine(key, !(kind as u64)))));
+        let mut sum = Sum::of(count);
+        let mut bright = Vec::with_capacity(count);
         for i in 0..count {
+            let (at, places) = lens::place(i, count, key);
             let key = combine(key, i as u64);
-            let at = (i as f64 + unit_f64(key)) / count as f64;
-            let line = if column { self.lens.column(corner, at) } else { self.lens.row(corner, at) };
-            let depth_m = self.tracer.line(&line, combine(key, 1), scratch, |seen, ray, share| {
+            let line = if column { pixel.column(at) } else { pixel.row(at) };
+            let before = luminance(sum.look.radiance);
+            let depth_m = self.tracer.line(&line, at, &places, combine(key, 1), scratch, |seen, ray, share| {
                 sum.cover(seen, share);
                 let kind = usize::from(matches!(seen, Seen::Undercoat(_)));
                 let weight = picks[kind].weight(share);
@@ -145,8 +149,9 @@ impl Reference<'_> {
                 }
             });
             sum.depth_m += depth_m;
-            sum.compare(&mut before);
+            bright.push(luminance(sum.look.radiance) - before);
         }
+        sum.variance = variance(&bright);
         sum
     }
 
@@ -159,141 +164,8 @@ impl Reference<'_> {
     }
 }
 
-/// Chooses evenly among small shares: whenever their sum passes a multiple of the least.
-struct Pick {
-    least: f64,
-    passed: f64,
-}
-
-impl Pick {
-    /// What a share counts for: it is the share in the mean, and 0 or no less than the least.
-    fn weight(&mut self, share: f64) -> f64 {
-        if share >= self.least {
-            return share;
-        }
-        self.passed += share;
-        if self.passed < self.least {
-            return 0.0;
-        }
-        self.passed -= self.least;
-        self.least
-    }
-}
-
 /// A pixel and those around it.
 fn around([x, y]: [usize; 2], [width, height]: [usize; 2]) -> impl Iterator<Item = usize> {
     let near = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
     near(y, height).flat_map(move |y| near(x, width).map(move |x| y * width + x))
-}
-
-/// A pinhole camera in f64.
-struct Lens {
-    eye_m: DVec3,
-    axes: [DVec3; 3],
-    middle: [f64; 2],
-    focal_px: f64,
-}
-
-impl Lens {
-    fn new(camera: &Camera, origin_m: DVec3, size: [usize; 2]) -> Self {
-        let [right, up, back] = camera.axes();
-        let middle = size.map(|n| 0.5 * n as f64);
-        let focal_px = middle[1] / libm::tan(0.5 * camera.vfov_deg.to_radians());
-        Self { eye_m: DVec3::from(camera.eye) - origin_m, axes: [right, up, -back], middle, focal_px }
-    }
-
-    fn direction(&self, x: f64, y: f64) -> DVec3 {
-        let across = (x - self.middle[0]) / self.focal_px;
-        let down = (y - self.middle[1]) / self.focal_px;
-        self.axes[0] * across - self.axes[1] * down + self.axes[2]
-    }
-
-    /// A row of the pixel with this corner.
-    fn row(&self, [x, y]: [f64; 2], at: f64) -> Line {
-        Line { eye_m: self.eye_m, base: self.direction(x, y + at), step: self.axes[0] / self.focal_px }
-    }
-
-    /// A column of it.
-    fn column(&self, [x, y]: [f64; 2], at: f64) -> Line {
-        Line { eye_m: self.eye_m, base: self.direction(x + at, y), step: -self.axes[1] / self.focal_px }
-    }
-}
-
-/// Luminance of linear sRGB primaries (Rec. 709).
-fn luminance(colour: DVec3) -> f64 {
-    colour.dot(DVec3::new(0.2126, 0.7152, 0.0722))
-}
-
-/// Sums over a pixel's lines.
-#[derive(Default)]
-struct Sum {
-    lines: f64,
-    /// Σ of the squared differences of luminance between a line and the one before.
-    unlike: f64,
-    look: Look,
-    depth_m: f64,
-    guard: f64,
-    undercoat: f64,
-    skin: f64,
-}
-
-impl Sum {
-    fn add(&mut self, look: &Look, share: f64) {
-        self.look.radiance += look.radiance * share;
-        self.look.albedo += look.albedo * share;
-        self.look.tangent += look.tangent * share;
-        self.look.normal += look.normal * share;
-    }
-
-    fn cover(&mut self, seen: &Seen, share: f64) {
-        *match seen {
-            Seen::Guard { .. } => &mut self.guard,
-            Seen::Undercoat(_) => &mut self.undercoat,
-            Seen::Skin(_) => &mut self.skin,
-        } += share;
-    }
-
-    /// Takes note of how unlike the last line is to the one before, whose sum this was.
-    fn compare(&mut self, before: &mut Option<[f64; 2]>) {
-        let sum = luminance(self.look.radiance);
-        let line = sum - before.map_or(0.0, |[sum, _]| sum);
-        if let Some([_, last]) = *before {
-            self.unlike += (line - last) * (line - last);
-        }
-        *before = Some([sum, line]);
-    }
-
-    /// Standard error of the pixel's lightness (CIE L*, 0 to 100), which goes with the cube root of luminance.
-    fn lightness_error(&self) -> f64 {
-        let count = self.lines.max(2.0);
-        let slope = 116.0 / 3.0 * libm::pow(luminance(self.look.radiance) / count + 1e-3, -2.0 / 3.0);
-        (0.5 * self.unlike / (count - 1.0) / count).sqrt() * slope
-    }
-
-    /// Adds other lines of the pixel.
-    fn join(&mut self, other: &Self) {
-        self.lines += other.lines;
-        self.look.radiance += other.look.radiance;
-        self.look.albedo += other.look.albedo;
-        self.look.tangent += other.look.tangent;
-        self.look.normal += other.look.normal;
-        self.depth_m += other.depth_m;
-        self.guard += other.guard;
-        self.undercoat += other.undercoat;
-        self.skin += other.skin;
-    }
-
-    fn into_film(self, film: &mut Film, i: usize) {
-        let met = self.guard + self.undercoat + self.skin;
-        let part = 1.0 / self.lines.max(1.0);
-        let mean = |v: DVec3| (v * part).as_vec3();
-        film.radiance[i] = mean(self.look.radiance);
-        film.albedo[i] = mean(self.look.albedo);
-        film.tangent[i] = mean(self.look.tangent);
-        film.normal[i] = mean(self.look.normal);
-        film.depth_m[i] = if met > 0.0 { (self.depth_m / met) as f32 } else { 0.0 };
-        film.alpha[i] = (met * part) as f32;
-        film.guard[i] = (self.guard * part) as f32;
-        film.undercoat[i] = (self.undercoat * part) as f32;
-    }
 }

@@ -5,7 +5,8 @@
 
 use super::along::{Along, View};
 use super::bvh::Ray;
-use super::guard::{Crossing, Guard, Strip};
+use super::guard::{Candidate, Crossing, Guard, Strip};
+use super::lens::Pixel;
 use super::line::Line;
 use super::medium::Medium;
 use super::shell::Place;
@@ -13,7 +14,7 @@ use super::skin::Skin;
 use crate::math::hash::Stream;
 
 /// Parts of a line that take undercoat and skin from one place each.
-const PARTS: usize = 2;
+pub const PARTS: usize = 4;
 
 /// What is seen.
 #[derive(Clone, Copy, Debug)]
@@ -59,40 +60,86 @@ pub struct Scratch {
     /// Hairs entered but not passed yet, farthest first, and those that are passed.
     waiting: Vec<(Crossing, u32)>,
     passed: Vec<Crossing>,
+    /// All that is seen on a line, along which ray, and which share of the line it takes.
+    seen: Vec<(Seen, Ray, f64)>,
+    /// How far the line was looked along, m: infinite where part of it passes all.
+    line_reached_m: f64,
+    /// Of a pixel: its hair, nearest first, whether lines are columns, and how far they were looked along so far, m.
+    candidates: Vec<Candidate>,
+    column: bool,
+    reached_m: Option<f64>,
 }
 
 /// Pieces of hair that tell how the hair of a pixel lies.
-const TELLING: usize = 16;
+const TELLING: usize = 24;
+
+/// Of the depth that a pixel's lines were looked along so far, by how much more hair is looked for.
+const BEYOND: f64 = 0.1;
 
 impl Tracer<'_> {
-    /// Whether hair lies rather along a row than along a column, so that columns cut it shorter.
-    pub fn lies_across(&self, row: &Line, column: &Line, scratch: &mut Scratch) -> bool {
+    /// Begins with a pixel; tells whether hair lies rather along its rows than along its columns, so that columns cut it
+    /// shorter.
+    pub fn begin(&self, pixel: &Pixel<'_>, scratch: &mut Scratch) -> bool {
+        (scratch.reached_m, scratch.column) = (None, false);
         let Some(guard) = self.guard else { return false };
+        guard.candidates(pixel, &mut scratch.candidates);
         let mut ways = [0.0_f64; 2];
-        for line in [row, column] {
-            guard.strips(line, f64::INFINITY, &mut scratch.strips);
-            scratch.strips.sort_by(|a, b| a.near_m.total_cmp(&b.near_m));
-            for strip in scratch.strips.iter().take(TELLING) {
-                let way = guard.way(strip);
-                ways[0] += way.dot(row.step).abs();
-                ways[1] += way.dot(column.step).abs();
-            }
+        let steps = [pixel.row(0.5).step, pixel.column(0.5).step];
+        for candidate in scratch.candidates.iter().take(TELLING) {
+            let way = guard.way(candidate);
+            (0..2).for_each(|i| ways[i] += way.dot(steps[i]).abs());
         }
-        ways[0] > ways[1]
+        scratch.column = ways[0] > ways[1];
+        scratch.column
     }
 
-    /// Calls `visit` with all that is seen on a line, the ray that it is seen along and which share of the line it takes; gives
-    /// Σ share × distance.
-    pub fn line(&self, line: &Line, key: u64, scratch: &mut Scratch, mut visit: impl FnMut(&Seen, &Ray, f64)) -> f64 {
+    /// Calls `visit` with all that is seen on the line at `at` of the pixel that was begun with, the ray that it is seen along
+    /// and which share of the line it takes; gives Σ share × distance. Undercoat and skin are looked for at these places of
+    /// it, one in each part.
+    pub fn line(
+        &self,
+        line: &Line,
+        at: f64,
+        places: &[f64; PARTS],
+        key: u64,
+        scratch: &mut Scratch,
+        mut visit: impl FnMut(&Seen, &Ray, f64),
+    ) -> f64 {
+        let parts = places.map(|x| Along::new(line.ray(x), self.skin));
+        // Hair is looked for somewhat beyond where earlier lines of the pixel ended; seldom, that is too near.
+        let nearest_m = scratch.candidates.first().map_or(0.0, |candidate| candidate.near_m);
+        let far_m = scratch.reached_m.map_or(f64::INFINITY, |reached_m| reached_m + BEYOND * (reached_m - nearest_m));
+        let mut depth_m = self.look_along(line, at, parts.clone(), key, far_m, scratch);
+        if scratch.line_reached_m > far_m {
+            depth_m = self.look_along(line, at, parts, key, f64::INFINITY, scratch);
+        }
+        scratch.reached_m = Some(scratch.reached_m.unwrap_or(0.0).max(scratch.line_reached_m));
+        for (seen, ray, share) in &scratch.seen {
+            visit(seen, ray, *share);
+        }
+        depth_m
+    }
+
+    /// Fills the list of all that is seen on a line, where hair beyond `hair_m` is left out.
+    fn look_along(
+        &self,
+        line: &Line,
+        at_line: f64,
+        mut parts: [Along; PARTS],
+        key: u64,
+        hair_m: f64,
+        scratch: &mut Scratch,
+    ) -> f64 {
         let mut random = Stream::new(key);
         let mut unit = || f64::from(random.unit());
-        let mut parts: [Along; PARTS] =
-            std::array::from_fn(|i| Along::new(line.ray((i as f64 + unit()) / PARTS as f64), self.skin));
         scratch.strips.clear();
         scratch.active.clear();
+        scratch.seen.clear();
+        scratch.line_reached_m = 0.0;
         if let Some(guard) = self.guard {
-            let far_m = parts.iter().map(Along::far_m).fold(0.0, f64::max);
-            guard.strips(line, far_m * 1.001, &mut scratch.strips);
+            let far_m = parts.iter().map(Along::far_m).fold(0.0, f64::max) * 1.001;
+            let Scratch { strips, candidates, column, .. } = &mut *scratch;
+            guard.strips(line, *column, at_line, candidates, far_m.min(hair_m), strips);
         }
         scratch.tallies.clear();
         scratch.tallies.resize(scratch.strips.len(), Tally::default());
@@ -128,21 +175,22 @@ impl Tracer<'_> {
                 let ray = line.ray(at + (to - at) * unit());
                 let view = self.look(&ray, part, to - at, scratch);
                 opaque_m = if view.left > 0.0 { f64::INFINITY } else { view.at_m + part.farther_m(&ray) };
+                scratch.line_reached_m = scratch.line_reached_m.max(opaque_m);
                 depth_m += view.depth_m;
                 at = to;
             }
+            let Scratch { strips, tallies, seen, .. } = &mut *scratch;
             // Hairs in order of x.
-            let seen = scratch.tallies.iter_mut().zip(&scratch.strips).filter(|(tally, _)| tally.share > 0.0);
-            for (tally, strip) in seen {
+            for (tally, strip) in tallies.iter_mut().zip(strips).filter(|(tally, _)| tally.share > 0.0) {
                 let knot = tally.knots / tally.share;
-                visit(&Seen::Guard { strand: strip.strand, knot }, &part.ray, tally.share);
+                seen.push((Seen::Guard { strand: strip.strand, knot }, part.ray, tally.share));
                 *tally = Tally::default();
             }
             for piece in part.pieces.iter().filter(|piece| piece.seen > 0.0) {
-                visit(&Seen::Undercoat(piece.place), &part.ray, piece.seen);
+                seen.push((Seen::Undercoat(piece.place), part.ray, piece.seen));
             }
             if let Some((_, place)) = part.skin.filter(|_| part.skin_seen > 0.0) {
-                visit(&Seen::Skin(place), &part.ray, part.skin_seen);
+                seen.push((Seen::Skin(place), part.ray, part.skin_seen));
             }
         }
         depth_m
@@ -151,7 +199,7 @@ impl Tracer<'_> {
     /// Looks along a ray through the active strips and a part's undercoat, and adds up what is seen.
     fn look(&self, ray: &Ray, part: &mut Along, width: f64, scratch: &mut Scratch) -> View {
         let mut view = View::new(width);
-        let Scratch { strips, tallies, active, waiting, passed } = scratch;
+        let Scratch { strips, tallies, active, waiting, passed, .. } = scratch;
         waiting.clear();
         passed.clear();
         // Skin and undercoat slant as the skin does.
