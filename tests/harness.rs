@@ -236,6 +236,11 @@ fn the_reference_sees_a_light_three_hundredths_too_weak() {
 }
 
 #[test]
+fn the_reference_sees_places_a_thousandth_of_the_hair_beside_a_ray() {
+    assert!(crate::oracle::places_missed(1e-3) > 900);
+}
+
+#[test]
 fn the_reference_sees_hair_a_thousandth_too_wide() {
     assert!(crate::oracle::largest_gap(1.001) > 1e-4);
 }

@@ -11,6 +11,7 @@ use furrier::render::picture::{self, draw};
 use furrier::render::reference::bvh::Ray;
 use furrier::render::reference::cone;
 use furrier::render::reference::medium::{Counted, Medium};
+use furrier::render::reference::shell::Place;
 use furrier::render::reference::{self, Settings};
 
 /// Optical depth of the reference's medium along a ray from above through hair of one length on level skin.
@@ -76,7 +77,7 @@ pub fn fault(difference: &Difference) -> Option<&'static str> {
     let [reference, drawn] = difference.coverage;
     [
         (difference.bias.abs() > 0.01, "bias"),
-        (difference.flip > 0.035, "flip"),
+        (difference.flip > 0.02, "flip"),
         ((drawn - reference).abs() > 0.002, "coverage"),
     ]
     .into_iter()
@@ -135,6 +136,44 @@ fn a_line_sees_a_hair_where_its_rays_meet_it() {
     assert!(gap < 3e-5, "{gap} of a stretch");
 }
 
+/// Of a thousand random places in a pelt's shell, how many a ray through them does not find where they are, if it passes
+/// `beside` of the shell's height away.
+pub fn places_missed(beside: f64) -> usize {
+    let grown = thin();
+    let pelt = grown.pelt();
+    let normals = pelt.skin.smooth_normals();
+    let medium = Medium::new(&pelt, &normals, None).unwrap();
+    let height_m = f64::from(medium.shell.undercoat.height_m);
+    let mut random = Stream::new(11);
+    let mut unit = || f64::from(random.unit());
+    let missed = |_: &usize| {
+        let triangle = (unit() * pelt.skin.triangles.len() as f64) as u32;
+        let (u, v) = (unit(), unit());
+        let b = if u + v < 1.0 { DVec3::new(u, v, 1.0 - u - v) } else { DVec3::new(1.0 - u, 1.0 - v, u + v - 1.0) };
+        let place = Place { triangle, b, t: unit() };
+        let direction = DVec3::new(unit() - 0.5, unit() - 0.5, unit() - 0.5).normalize();
+        let away = direction.any_orthonormal_vector() * (beside * height_m);
+        let at_m = height_m * (1.0 + unit());
+        let ray = Ray::new(medium.slabs.position_m(&place) + away - direction * at_m, direction);
+        let mut found = false;
+        medium.slabs.visit(&ray, [0.0, 3.0 * height_m], f64::INFINITY, |sight, _, [from_m, to_m], _| {
+            found |= from_m - 1e-9 <= at_m
+                && at_m <= to_m + 1e-9
+                && sight.spots(at_m).into_iter().flatten().any(|spot| {
+                    let there = spot.place;
+                    there.triangle == triangle && (there.b - b).length() < 1e-6 && (there.t - place.t).abs() < 1e-6
+                });
+        });
+        !found
+    };
+    (0..1000).filter(missed).count()
+}
+
+#[test]
+fn a_ray_finds_every_place_of_the_shell_that_it_passes() {
+    assert_eq!(places_missed(0.0), 0);
+}
+
 /// How far two seeds of the reference are apart.
 fn between_seeds(lines: usize) -> Difference {
     let grown = thin();
@@ -146,5 +185,5 @@ fn between_seeds(lines: usize) -> Difference {
 fn more_lines_bring_two_seeds_closer() {
     let [few, more] = [1, 4].map(between_seeds);
     println!("FLIP {:.4} of a line, {:.4} of four; bias {:+.4} and {:+.4}", few.flip, more.flip, few.bias, more.bias);
-    assert!(more.flip < 0.6 * few.flip);
+    assert!(more.flip < 0.5 * few.flip);
 }
