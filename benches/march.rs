@@ -106,7 +106,7 @@ impl Rays {
             far_m: f32::INFINITY,
         };
         let journeys: Vec<Journey> = self.rays.iter().map(journey).collect();
-        self.volume.depths_along(&journeys, &Stepping::default(), f32::INFINITY)
+        self.volume.depths_along(&journeys, &Stepping::default(), 0.0, f32::INFINITY)
     }
 }
 

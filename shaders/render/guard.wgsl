@@ -13,6 +13,8 @@ override FILL: bool = false;
 @group(3) @binding(2) var<storage, read_write> fragment_share: array<u32>;
 @group(3) @binding(3) var<storage, read_write> fragment_pixel: array<u32>;
 
+// Share of what a hair covers at most below which a corner of it is left out.
+const LEAST_SHARE: f32 = 0.01;
 // Pixels that one thread looks at, at most: some drivers end loops that run longer.
 const MOST_PIXELS: u32 = 60000u;
 
@@ -128,6 +130,7 @@ fn guard(
     let high = max(a.major, b.major);
     let first = i32(clamp(floor(low), f32(major.x), f32(major.y)));
     let last = i32(clamp(ceil(high), f32(major.x), f32(major.y)));
+    let least = LEAST_SHARE * min(2.0 * max(start_half, end_half), 1.0);
     var seen = 0u;
     for (var row = first; row < last; row++) {
         let row_from = max(low, f32(row));
@@ -157,7 +160,7 @@ fn guard(
             let after = ramp(f32(x + 1) - (centre - half), drift) - ramp(f32(x + 1) - (centre + half), drift);
             let coverage = (after - before) * share;
             before = after;
-            if coverage <= 0.0 {
+            if coverage <= least {
                 continue;
             }
             let pixel = select(vec2(row, x), vec2(x, row), steep);

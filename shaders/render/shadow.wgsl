@@ -10,6 +10,10 @@
 // Optical depth beyond which no light is left; the same beside an open border.
 const DARK: f32 = 8.0;
 const DARK_AT_BORDERS: f32 = 15.0;
+// How much deeper steps become with each optical depth passed, and how much deeper and longer they are at most.
+const HASTE: f32 = 0.25;
+const MOST_PATIENCE: f32 = 4.0;
+const MOST_LENGTHENED: f32 = 2.0;
 
 @compute @workgroup_size(64)
 fn shadow(
@@ -35,7 +39,9 @@ fn shadow(
     var depth = 0.0;
     for (var i = 0u; i < MOST_STEPS && walk.alive && depth < enough; i++) {
         // Steps towards the light may be long: what they miss is blurred by the shadow's own resolution.
-        depth += advance(&walk, origin_m, lights[0].to_light, 1e30, Stepping(0.5, 0.5)).depth;
+        let patience = min(1.0 + HASTE * depth, MOST_PATIENCE);
+        let stepping = Stepping(0.5 * patience, 0.5 * min(patience, MOST_LENGTHENED));
+        depth += advance(&walk, origin_m, lights[0].to_light, 1e30, stepping).depth;
     }
     depth += mean_depths(triangle, b, t * scene.undercoat_kind.top_m / tips_m()).y;
     write_byte(first * (scene.layers + 1u) + level * corners_of(d) + corner, code_value(depth));

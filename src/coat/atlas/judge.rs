@@ -253,7 +253,7 @@ impl Judge<'_> {
             Some((i, Journey { origin_m, direction: -ray.direction, start: start(ray)?, far_m }))
         };
         let (found, journeys): (Vec<usize>, Vec<Journey>) = rays.iter().enumerate().filter_map(journey).unzip();
-        for (i, depth) in found.into_iter().zip(volume.depths_along(&journeys, &STEPPING, OPAQUE_DEPTH)) {
+        for (i, depth) in found.into_iter().zip(volume.depths_along(&journeys, &STEPPING, 0.0, OPAQUE_DEPTH)) {
             depths[i] = depth;
         }
         depths

@@ -17,18 +17,19 @@ use std::arch::x86_64::{
 pub struct Avx2(());
 
 impl Avx2 {
-    /// The proof that this machine has AVX2, if it does.
+    /// The proof that this machine has AVX2 and what goes with it, if it does.
     pub fn found() -> Option<Self> {
-        std::arch::is_x86_feature_detected!("avx2").then_some(Self(()))
+        use std::arch::is_x86_feature_detected as has;
+        (has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt")).then_some(Self(()))
     }
 
     /// Runs work with it.
     pub fn run<W: Work>(self, work: W) -> W::Output {
-        #[target_feature(enable = "avx2")]
+        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
         fn with_avx2<W: Work>(work: W) -> W::Output {
             work.run::<Avx2>()
         }
-        // SAFETY: a value of this type is only made where the machine has AVX2.
+        // SAFETY: a value of this type is only made where the machine has all of these.
         unsafe { with_avx2(work) }
     }
 }

@@ -29,6 +29,9 @@ const DARK_AT_BORDERS: f32 = 15.0;
 /// one, undercoat was 6 % too bright.
 const TOWARDS_LIGHT: Stepping = Stepping { depth: 0.5, layers: 0.5 };
 
+/// How much longer they become with each optical depth passed: what lies in deep shadow has little light to be wrong about.
+const HASTE: f32 = 0.25;
+
 /// Optical depth of undercoat, and of guard hair in the mean, between the corners of sub-elements and the key light, filled
 /// prism by prism when first needed.
 #[derive(Debug)]
@@ -86,7 +89,7 @@ impl Shadows {
             .map(|(i, level)| journey(&sites[i], level))
             .collect();
         let enough = if shell.neighbours.at_border(triangle) { DARK_AT_BORDERS } else { DARK };
-        let depths = volume.depths_along(&journeys, &TOWARDS_LIGHT, enough);
+        let depths = volume.depths_along(&journeys, &TOWARDS_LIGHT, HASTE, enough);
         let mut codes = vec![0; sites.len() * levels];
         for (site, codes) in sites.iter().zip(codes.chunks_exact_mut(levels)) {
             if let Some(stored) = site.stored() {

@@ -7,15 +7,15 @@ use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, MOST, Mask, Row};
 
 impl Volume<'_> {
-    /// Optical depths along rays, each up to `enough`.
-    pub fn depths_along(&self, journeys: &[Journey], stepping: &Stepping, enough: f32) -> Vec<f32> {
-        lanes::run(Measure { volume: self, journeys, stepping, enough })
+    /// Optical depths along rays, each up to `enough`. Steps lengthen by `haste` for each optical depth passed.
+    pub fn depths_along(&self, journeys: &[Journey], stepping: &Stepping, haste: f32, enough: f32) -> Vec<f32> {
+        lanes::run(Measure { volume: self, journeys, stepping, haste, enough })
     }
 
     /// Optical depth along one ray.
     pub fn depth_along(&self, origin_m: Vec3, direction: Vec3, start: Start, stepping: &Stepping, enough: f32) -> f32 {
         let journey = Journey { origin_m, direction, start, far_m: f32::INFINITY };
-        self.depths_along(&[journey], stepping, enough)[0]
+        self.depths_along(&[journey], stepping, 0.0, enough)[0]
     }
 }
 
@@ -24,6 +24,7 @@ struct Measure<'v, 'a, 'j> {
     volume: &'v Volume<'a>,
     journeys: &'j [Journey],
     stepping: &'j Stepping,
+    haste: f32,
     enough: f32,
 }
 
@@ -32,13 +33,16 @@ impl lanes::Work for Measure<'_, '_, '_> {
 
     #[inline(always)]
     fn run<I: Isa>(self) -> Vec<f32> {
-        let Self { volume, journeys, stepping, enough } = self;
+        let Self { volume, journeys, stepping, haste, enough } = self;
         let found = vec![0.0; journeys.len()];
-        let mut depths = Depths { journeys, next: 0, index: [0; MOST], sum: Row::default(), enough, found };
+        let mut depths = Depths { journeys, next: 0, index: [0; MOST], sum: Row::default(), haste, enough, found };
         super::march::<I, _>(volume, stepping, &mut depths);
         depths.found
     }
 }
+
+/// How much deeper a ray's last steps may be than its first; as in `render/shadow.wgsl`.
+const MOST_PATIENCE: f32 = 4.0;
 
 /// Sums optical depth.
 struct Depths<'j> {
@@ -46,6 +50,7 @@ struct Depths<'j> {
     next: usize,
     index: [usize; MOST],
     sum: Row,
+    haste: f32,
     enough: f32,
     found: Vec<f32>,
 }
@@ -58,6 +63,11 @@ impl<I: Isa> Traveller<I> for Depths<'_> {
         self.sum.0[lane] = 0.0;
         self.next += 1;
         Some(journey)
+    }
+
+    #[inline(always)]
+    fn patience(&self) -> F32s<I> {
+        (F32s::of(&self.sum) * self.haste + 1.0).min(F32s::splat(MOST_PATIENCE))
     }
 
     #[inline(always)]

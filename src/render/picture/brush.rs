@@ -95,6 +95,7 @@ impl Brush<'_, '_> {
         // From row to row, or from column to column where the ribbon lies flat, and from pixel to pixel.
         let (down, along) = if narrow.flat { (1, TILE) } else { (TILE, 1) };
         let [first_row, first_pixel] = if narrow.flat { [from[0], from[1]] } else { [from[1], from[0]] };
+        let least = F32s::<I>::splat(piece.least_coverage());
         let mut first = narrow.rows[0];
         while first < narrow.rows[1] {
             let found = narrow.rows::<I>(first);
@@ -106,11 +107,12 @@ impl Brush<'_, '_> {
             let (before, streak) = (self.guard.count(), self.guard.next_streak());
             self.guard.make_room(NARROW * I::LANES);
             for k in 0..NARROW {
-                let mut left = found.covered[k] & inside;
+                let coverage = F32s::<I>::of(&found.coverage[k]);
+                let mut left = found.covered[k] & inside & coverage.gt(least).bits();
                 if left == 0 {
                     continue;
                 }
-                let parts = Parts::of_lanes(F32s::<I>::of(&found.coverage[k]), opacity, code).row();
+                let parts = Parts::of_lanes(coverage, opacity, code).row();
                 while left != 0 {
                     let lane = left.trailing_zeros() as usize;
                     left &= left - 1;
@@ -138,7 +140,11 @@ impl Brush<'_, '_> {
     #[inline(always)]
     fn wide(&mut self, piece: &Piece) {
         let (pass, stroke) = (self.pass, self.guard.next_stroke());
+        let least = piece.least_coverage();
         ribbon::rasterise(&piece.a, &piece.b, self.window, |share| {
+            if share.coverage <= least {
+                return;
+            }
             let sites = self.sites(piece, F32s::<Scalar>::splat(share.along));
             let (z_m, parts) = (sites.z_m.0[0], Parts::new(share.coverage, sites.opacity.0[0]));
             let pixel = self.place.at(share.pixel[0] as usize, share.pixel[1] as usize);
@@ -188,12 +194,24 @@ struct Piece {
     id: u32,
 }
 
+impl Piece {
+    /// Coverage that is not worth a fragment.
+    #[inline(always)]
+    fn least_coverage(&self) -> f32 {
+        LEAST_SHARE * (2.0 * self.a.half_px.max(self.b.half_px)).min(1.0)
+    }
+}
+
 /// Columns or rows of a tile that two knots and what lies between them touch.
 #[inline(always)]
 fn within(a: f32, b: f32, pad: f32, from: usize, to: usize) -> [usize; 2] {
     let cut = |v: f32| ((v - from as f32).max(0.0) as i32 as usize).min(to - from - 1);
     [cut(a.min(b) - pad), cut(a.max(b) + pad)]
 }
+
+/// Share of what a hair covers at most below which a corner of it is left out: of the fragments a fourteenth, of what they cover a
+/// thousandth. As in `render/guard.wgsl`.
+const LEAST_SHARE: f32 = 0.01;
 
 /// Pieces fetched before they are drawn.
 const FETCH_AT_ONCE: usize = 32;

@@ -70,7 +70,7 @@ impl Settings {
         Self {
             size,
             hair_px: 0.5,
-            opaque: 0.01,
+            opaque: 0.0125,
             stepping: Stepping { depth: 0.5, layers: 2.0 },
             resolution: Resolution { subelement_px: 3.0, ..Resolution::default() },
             ..Self::default()
@@ -83,7 +83,7 @@ impl Settings {
         Self {
             size,
             halvings: if size[0] * size[1] <= SMALL { 2 } else { 1 },
-            blending: Blending::Virtual { fragments: 16 },
+            blending: Blending::Virtual { fragments: 8 },
             opaque: 0.004,
             stepping: Stepping { depth: 0.15, layers: 0.25 },
             resolution: Resolution { coarsest_details: 2.0, ..Resolution::default() },
