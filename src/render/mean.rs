@@ -29,7 +29,10 @@ const DARK: f32 = 15.0;
 /// How far from its origin a ray may meet the first face, and how far apart the ends of hair are that count as one, in
 /// heights of the tips.
 const NEAR: f32 = 1e-4;
-const SAME: f32 = 0.02;
+const SAME: f32 = 0.04;
+
+/// The same, in ways from the ray's origin: flat faces at a slant to the ray lie farther from prisms' sides.
+const MUCH: f32 = 4.0;
 
 /// A ray to the light from a place above a vertex.
 struct Column {
@@ -37,13 +40,37 @@ struct Column {
     own: Option<Ray>,
     /// Height of the tips, m.
     tips_m: f32,
-    /// Where the ray meets tips, borders and skin.
+    /// Where the ray ends, m from where it begins.
+    far_m: f32,
+    /// Where the ray leaves hair.
     meetings: Vec<Meeting>,
+}
+
+/// Depths whose straight lines from height to height keep in the mean to what they are read from, which is hollow: each is
+/// moved by a twelfth of its second difference. Undercoat's falls in a straight line already.
+fn straightened(depths: &Depths) -> Depths {
+    let mut moved = *depths;
+    for i in 1..LAYERS {
+        let [below, here, above] = [i - 1, i, i + 1].map(|i| depths[i][1]);
+        moved[i][1] = (here - (below - 2.0 * here + above) / 12.0).max(0.0);
+    }
+    moved
+}
+
+/// Hair that a ray passes besides what is around its vertex, by where the ray leaves it.
+struct Other {
+    /// Number of the height at which the ray begins.
+    height: usize,
+    far_m: f32,
+    meeting: Meeting,
 }
 
 /// Optical depths towards the key light at heights from the skin to the tips: of the undercoat that a march from prism to
 /// prism meets, and of all other hair.
 pub type Depths = [[f32; 2]; LAYERS + 1];
+
+/// Values at heights up to the tips.
+type Table = [f32; LAYERS * 4 + 1];
 
 /// A kind of hair in the mean.
 #[derive(Clone, Debug)]
@@ -51,7 +78,9 @@ struct Kind {
     /// Slopes and their spread.
     slopes: Undercoat,
     /// Hair width × length along the hair per skin area and height, 1/m, at heights up to the tips.
-    width_per_m: [f32; LAYERS * 4 + 1],
+    width_per_m: Table,
+    /// The same, summed from the skin up to there in intervals.
+    width_below_per_m: Table,
 }
 
 impl Kind {
@@ -77,9 +106,13 @@ impl Kind {
             })
         };
         let last = (LAYERS * 4) as f32;
-        let width_per_m =
+        let width_per_m: Table =
             std::array::from_fn(|i| fibre.density_per_m2 * slopes.stretch * width(tips * i as f32 / last));
-        Self { slopes, width_per_m }
+        let mut width_below_per_m = [0.0; LAYERS * 4 + 1];
+        for i in 1..width_per_m.len() {
+            width_below_per_m[i] = width_below_per_m[i - 1] + 0.5 * (width_per_m[i - 1] + width_per_m[i]);
+        }
+        Self { slopes, width_per_m, width_below_per_m }
     }
 }
 
@@ -214,14 +247,20 @@ impl<'a> MeanShadow<'a> {
                     own = found.depths;
                 }
                 depths[i] = own;
-                // Where its own hair ends the ray has been.
-                let other = |meeting: &Meeting| (meeting.at_m - found.end_m).abs() > SAME * column.tips_m;
-                others.extend(column.meetings.into_iter().filter(other).map(|meeting| (i, meeting)));
+                let Column { own: ray, tips_m, far_m, mut meetings } = column;
+                // Where it leaves hair that it has been followed through.
+                let end_m = found.end_m.filter(|_| ray.is_some_and(|ray| ray.onwards)).unwrap_or(f32::NAN);
+                let off = |meeting: &Meeting| (meeting.at_m - end_m).abs();
+                let nearest = (0..meetings.len()).min_by(|&a, &b| off(&meetings[a]).total_cmp(&off(&meetings[b])));
+                if let Some(same) = nearest.filter(|&i| off(&meetings[i]) < MUCH * end_m + SAME * tips_m) {
+                    meetings.swap_remove(same);
+                }
+                others.extend(meetings.into_iter().map(|meeting| Other { height: i, far_m, meeting }));
             }
             end = begin;
         }
         self.add_others(&others, &mut depths);
-        depths
+        straightened(&depths)
     }
 
     /// The ray to the light from height number `i` above a vertex.
@@ -230,31 +269,30 @@ impl<'a> MeanShadow<'a> {
         let (foot_m, offset_m) = (self.shell.skin.positions_m[class as usize], self.shell.offsets_m[class as usize]);
         let tips_m = self.tips * offset_m.length();
         let mut meetings = Vec::new();
-        self.faces.meetings(foot_m + offset_m * t, NEAR * tips_m, &mut meetings);
-        let skin = meetings.iter().find(|meeting| meeting.place.t <= 0.0);
-        let own = self.start(class, t, skin.map_or(f32::INFINITY, |skin| skin.at_m));
-        Column { own, tips_m, meetings }
+        let far_m = self.faces.meetings(foot_m + offset_m * t, NEAR * tips_m, &mut meetings);
+        Column { own: self.start(class, t, far_m), tips_m, far_m, meetings }
     }
 
     /// Adds the hair that rays from some heights have passed where they leave it, followed back from there.
-    fn add_others(&self, others: &[(usize, Meeting)], depths: &mut Depths) {
+    fn add_others(&self, others: &[Other], depths: &mut Depths) {
         for others in others.chunks(MOST) {
             let mut rays = Rays::default();
-            for (ray, (_, meeting)) in rays.iter_mut().zip(others) {
-                let &Meeting { at_m, triangle, place } = meeting;
-                let origin_m = self.shell.prism(triangle).jacobian(&place).at_m;
-                *ray = Some(Ray { triangle, place, origin_m, to_light: false, far_m: at_m });
+            for (ray, other) in rays.iter_mut().zip(others) {
+                let Meeting { at_m, triangle, place } = other.meeting;
+                // Faces are flat and prisms' sides are not: the ray is moved to where its place is.
+                let origin_m = self.shell.prism(triangle).jacobian(&place).at_m - self.to_light * at_m;
+                *ray = Some(Ray { triangle, place, origin_m, far_m: other.far_m, onwards: false });
             }
             let found = lanes::run(Walk { mean: self, rays: &rays });
-            for ((i, _), found) in others.iter().zip(found) {
-                depths[*i][1] += found.depths.iter().sum::<f32>();
+            for (other, found) in others.iter().zip(found) {
+                depths[other.height][1] += found.depths.iter().sum::<f32>();
             }
         }
     }
 
     /// Where a ray begins above a vertex: in the prism around it into which the light's direction leads.
     fn start(&self, class: u32, t: f32, far_m: f32) -> Option<Ray> {
-        let mut best: Option<([f32; 4], u32, Place, Vec3)> = None;
+        let mut best: Option<([f32; 4], Ray)> = None;
         for &triangle in &self.around[class as usize] {
             let corners = self.shell.skin.triangles[triangle as usize];
             let Some(corner) = corners.iter().position(|&v| self.shell.skin.position_class[v as usize] == class) else {
@@ -269,13 +307,13 @@ impl<'a> MeanShadow<'a> {
             let [p, q, r] = self.shell.skin.corners_m(triangle as usize);
             let key = [least, -(p + q + r).x, -(p + q + r).y, -(p + q + r).z];
             if best.as_ref().is_none_or(|(most, ..)| key.partial_cmp(most) == Some(std::cmp::Ordering::Greater)) {
-                best = Some((key, triangle, place, jacobian.at_m));
+                let onwards = jacobian.determinant > 0.0;
+                best = Some((key, Ray { triangle, place, origin_m: jacobian.at_m, far_m, onwards }));
             }
         }
         // Where no prism lies that way, the light comes over an open border.
-        let ([least, ..], triangle, place, origin_m) = best?;
-        let leads = least > -1e-3 / self.shell.undercoat.height_m;
-        leads.then_some(Ray { triangle, place, origin_m, to_light: true, far_m })
+        let ([least, ..], ray) = best?;
+        (least > -1e-3 / self.shell.undercoat.height_m).then_some(ray)
     }
 
     /// The prism beyond the side opposite to a corner, and its own corner opposite to that side.

@@ -10,7 +10,7 @@ use crate::render::shell::outer::{self, corner};
 use crate::render::shell::prism::Place;
 use rayon::prelude::*;
 
-/// Where a ray towards the light meets a face.
+/// Where a ray towards the light leaves hair, as far as prisms are not inside out: there it is the other way around.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Meeting {
     /// Distance from the ray's origin, m.
@@ -22,7 +22,7 @@ pub(super) struct Meeting {
 /// Skin, tips and borders over all triangles, in this order.
 #[derive(Debug)]
 pub(super) struct Faces {
-    /// Across the light twice, and towards it.
+    /// Across the light twice, and towards it, right-handed.
     axes: [Vec3; 3],
     /// Least coordinates across the light, m.
     low_m: [f32; 2],
@@ -46,11 +46,12 @@ const MOST_SQUARES: f32 = 2048.0;
 impl Faces {
     /// Of a shell up to `tips` times its height.
     pub(super) fn new(shell: &Shell<'_>, tips: f32, to_light: Vec3) -> Self {
-        let (across, other) = to_light.any_orthonormal_pair();
+        let across = to_light.any_orthonormal_vector();
         let triangles = shell.skin.triangles.len();
-        let of_triangle = |t| outer::faces(shell, t, tips).map(|face| (face.triangle, face.corners));
+        // As prisms' coordinates have them.
+        let of_triangle = |t| outer::faces(shell, t, tips).map(|face| (face.triangle, face.unturned()));
         let mut faces = Self {
-            axes: [across, other, to_light],
+            axes: [across, to_light.cross(across), to_light],
             low_m: [0.0; 2],
             px_per_m: 1.0,
             grid: Grid::whole([1, 1]),
@@ -124,45 +125,52 @@ impl Faces {
         })
     }
 
-    /// Where a ray from a point to the light meets tips and borders before it meets skin, and then that, from `near_m` on;
-    /// in no order.
-    pub(super) fn meetings(&self, from_m: Vec3, near_m: f32, out: &mut Vec<Meeting>) {
+    /// How far a ray from a point to the light goes before it meets skin, m, and where it leaves hair until there, from
+    /// `near_m` on; in no order.
+    pub(super) fn meetings(&self, from_m: Vec3, near_m: f32, out: &mut Vec<Meeting>) -> f32 {
         out.clear();
         let from = self.seen(from_m);
         let [x, y] = self.px(from);
         let mut reach = Reach::NOTHING;
         reach.add(x, y, 0.0);
         let (columns, rows) = self.grid.touched(&reach);
-        let (Some(column), Some(row)) = (columns.last(), rows.last()) else { return };
-        let mut skin: Option<Meeting> = None;
+        let (Some(column), Some(row)) = (columns.last(), rows.last()) else { return f32::INFINITY };
+        let (mut skin, mut far_m): (Option<Meeting>, f32) = (None, f32::INFINITY);
         for &face in self.bins.of(row * self.grid.columns + column) {
             let face = face as usize;
             let [a, b, c] = self.corners[face].map(|p| p - from);
             // Products in this order are the same, but for their sign, from both sides of an edge: no ray slips through.
             let cross = |p: Vec3, q: Vec3| p.x * q.y - p.y * q.x;
             let e = Vec3::new(cross(b, c), cross(c, a), cross(a, b));
-            let whole = e.x + e.y + e.z;
-            if !(e.min_element() >= 0.0 || e.max_element() <= 0.0) || whole == 0.0 {
+            let area = e.x + e.y + e.z;
+            if !(e.min_element() >= 0.0 || e.max_element() <= 0.0) || area == 0.0 {
                 continue;
             }
-            let e = e / whole;
+            let e = e / area;
             let at_m = e.x * a.z + e.y * b.z + e.z * c.z;
-            if !(at_m > near_m && at_m < skin.map_or(f32::INFINITY, |skin| skin.at_m)) {
+            if !(at_m > near_m && at_m < far_m) {
+                continue;
+            }
+            let is_skin = face < self.triangles;
+            let leaves = (area > 0.0) != is_skin;
+            if is_skin {
+                (skin, far_m) = (None, at_m);
+            }
+            if !leaves {
                 continue;
             }
             let (triangle, [p, q, r]) = self.places(face);
             let mix = |p: f32, q: f32, r: f32| e.x * p + e.y * q + e.z * r;
             let b = [0, 1].map(|i| mix(p.b[i], q.b[i], r.b[i]));
             let meeting = Meeting { at_m, triangle, place: Place { b, t: mix(p.t, q.t, r.t) } };
-            if face < self.triangles {
+            if is_skin {
                 skin = Some(meeting);
             } else {
                 out.push(meeting);
             }
         }
-        if let Some(skin) = skin {
-            out.retain(|meeting| meeting.at_m < skin.at_m);
-            out.push(skin);
-        }
+        out.retain(|meeting| meeting.at_m < far_m);
+        out.extend(skin);
+        far_m
     }
 }

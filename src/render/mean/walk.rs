@@ -1,6 +1,6 @@
 //! Rays towards the key light through hair in the mean, some heights of one vertex side by side.
 
-use super::{DARK, LAYERS, MeanShadow};
+use super::{DARK, Kind, LAYERS, MeanShadow, Table};
 use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, MOST, Mask, Row, Vec3Row, Vec3s};
 use crate::render::march::prisms::{Places, Prisms};
@@ -9,23 +9,32 @@ use crate::render::march::{across, next_side};
 use crate::render::shell::prism::Place;
 
 /// Longest step, as a share of the tips' height over the skin.
-const STEP: f32 = 1.0 / 16.0;
+const STEP: f32 = 1.0 / 12.0;
+
+/// Farther from its line, in heights of the tips, nothing is followed.
+const ASTRAY: f32 = 0.02;
+
+/// How much shorter steps are in height than along the line: at folds heights change and distances do not.
+const FOLDED: f32 = 8.0;
+
+/// No place is set right by more, in its coordinates.
+const MOST_BACK: f32 = 0.25;
 
 /// No march takes more steps.
 const MOST_STEPS: usize = 512;
 
-/// A ray from inside the shell.
+/// A ray towards the light, and a place of the shell that it passes, from which it is followed through the shell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray {
     pub(super) triangle: u32,
-    /// Where in the prism over the triangle it begins.
+    /// Where in the prism over the triangle following begins.
     pub(super) place: Place,
-    /// The same, m.
+    /// Where the ray begins, m.
     pub(super) origin_m: Vec3,
-    /// Whether it goes to the light or away from it.
-    pub(super) to_light: bool,
-    /// Where it ends at the latest, m.
+    /// Where it ends at the latest, m from there.
     pub(super) far_m: f32,
+    /// Whether it is followed the way on which it nears the light in prisms that are not inside out.
+    pub(super) onwards: bool,
 }
 
 /// What a ray has met.
@@ -33,14 +42,18 @@ pub(super) struct Ray {
 pub(super) struct Found {
     /// Optical depths of undercoat and guard hair.
     pub(super) depths: [f32; 2],
-    /// How far it went, m.
-    pub(super) end_m: f32,
+    /// How far from its origin following ended, m; none where a fold led it back past that.
+    pub(super) end_m: Option<f32>,
 }
 
 /// Rays that are followed together; none where no hair is on the way.
 pub(super) type Rays = [Option<Ray>; MOST];
 
-/// Follows rays to the tips, the skin, an open border or a fold, where prisms turn inside out.
+/// Follows rays to the tips, the skin or an open border.
+///
+/// The places of the shell that lie on a line form curves. Along a curve places change by the adjugate of ∂x/∂(b₁, b₂, t) times
+/// the line's direction, and the distance along the line by the determinant: nothing is divided, so a curve leads through a
+/// fold, where prisms turn inside out and it turns back along the line, like through any other place.
 pub(super) struct Walk<'m, 'a> {
     pub(super) mean: &'m MeanShadow<'a>,
     pub(super) rays: &'m Rays,
@@ -58,7 +71,7 @@ impl lanes::Work for Walk<'_, '_> {
                 if let Some(ray) = ray {
                     walkers.on |= 1 << lane;
                     walkers.origin_m.set(lane, ray.origin_m);
-                    walkers.along.0[lane] = if ray.to_light { 1.0 } else { -1.0 };
+                    walkers.onwards.0[lane] = if ray.onwards { 1.0 } else { -1.0 };
                     walkers.far_m.0[lane] = ray.far_m;
                     walkers.enter(self.mean, lane, ray.triangle, ray.place);
                 }
@@ -71,7 +84,8 @@ impl lanes::Work for Walk<'_, '_> {
             }
             for (lane, found) in found.iter_mut().enumerate() {
                 let depths = [walkers.sum[0].0[lane], walkers.sum[1].0[lane]];
-                *found = Found { depths, end_m: walkers.at_m.0[lane] };
+                let passed = walkers.passed >> lane & 1 == 1;
+                *found = Found { depths, end_m: (!passed).then_some(walkers.at_m.0[lane]) };
             }
         }
         found
@@ -81,15 +95,14 @@ impl lanes::Work for Walk<'_, '_> {
 /// Rays under way.
 #[derive(Default)]
 struct Walkers {
-    /// A bit per lane.
+    /// A bit per lane: which are under way, and which have come back past their origins.
     on: u32,
+    passed: u32,
     origin_m: Vec3Row,
-    /// 1 towards the light, −1 away from it.
-    along: Row,
+    /// 1 or −1, as [`Ray::onwards`].
+    onwards: Row,
     far_m: Row,
     at_m: Row,
-    /// Sign of the determinant at the last place, which changes at folds.
-    sign: Row,
     b: [Row; 2],
     t: Row,
     sum: [Row; 2],
@@ -129,51 +142,67 @@ impl Walk<'_, '_> {
     fn step<I: Isa>(&self, walkers: &mut Walkers) {
         let mean = self.mean;
         let zero = F32s::<I>::splat(0.0);
-        let direction = Vec3s::splat(mean.to_light) * F32s::of(&walkers.along);
-        let at_m = F32s::of(&walkers.at_m);
+        let direction = Vec3s::splat(mean.to_light);
         let places = Places { b: [F32s::of(&walkers.b[0]), F32s::of(&walkers.b[1])], t: F32s::of(&walkers.t) };
         let j = walkers.prisms.jacobians(&places);
-        let places = places.moved(j.rates(Vec3s::of(&walkers.origin_m) + direction * at_m - j.at_m), F32s::splat(1.0));
-        let rates = j.rates(direction);
-        let fastest = rates.x.abs() + rates.y.abs() + rates.z.abs();
+        let from_origin_m = j.at_m - Vec3s::of(&walkers.origin_m);
+        let at_m = from_origin_m.dot(direction);
+        // By how much places and distance change along the curve.
+        let onwards = F32s::of(&walkers.onwards);
+        let nearing = onwards * j.determinant;
+        let rates = j.rates(direction) * nearing;
+        // Back to the line by the shortest way across the curve, which folds leave as short as it is elsewhere.
+        let off_m = direction * at_m - from_origin_m;
+        let back = j.rates(off_m);
+        let along = back.dot(rates) / rates.dot(rates);
+        let aside = back - rates * along;
+        let near = size(aside).lt(F32s::splat(MOST_BACK));
+        let places = places.moved(aside, near.keep(F32s::splat(1.0)));
+        let at_m = at_m - near.keep(along * nearing);
+        walkers.passed |= (Mask::from_bits(walkers.on) & !nearing.gt(zero) & !at_m.gt(zero)).bits();
+        let left_m = nearing.gt(zero).select(F32s::of(&walkers.far_m) - at_m, at_m);
+        let tips_m = j.up_m.length() * mean.tips;
         let sum = [F32s::of(&walkers.sum[0]), F32s::of(&walkers.sum[1])];
         let light = !(sum[0] + sum[1]).gt(F32s::splat(DARK));
-        let left_m = F32s::of(&walkers.far_m) - at_m;
-        let sign = j.determinant.lt(zero).select(F32s::splat(-1.0), F32s::splat(1.0));
-        let folded = (F32s::of(&walkers.sign) * sign).lt(zero);
+        let fastest = size(rates);
         let moving = Mask::from_bits(walkers.on)
             & fastest.gt(zero)
             & fastest.lt(F32s::splat(f32::INFINITY))
             & left_m.gt(zero)
-            & light
-            & !folded;
-        walkers.sign = sign.row();
+            & off_m.length().lt(tips_m * ASTRAY)
+            & light;
+        let pace = nearing.abs();
+        let slowness = (pace / tips_m).max(rates.z.abs() * (FOLDED / mean.tips)) * (1.0 / STEP);
+        let length = (F32s::splat(1.0) / slowness).min(left_m / pace);
+        // On as it goes in the middle.
+        let j = walkers.prisms.jacobians(&places.moved(rates, length * 0.5));
+        let nearing = onwards * j.determinant;
+        let rates = j.rates(direction) * nearing;
+        let (side, after) = next_side(&places, rates, mean.tips);
+        let length = length.min(after.max(zero));
+        let middle = places.moved(rates, length * 0.5);
         let up_m = j.up_m.length();
-        let tips_m = up_m * mean.tips;
-        let (side, after_m) = next_side(&places, rates, mean.tips);
-        let length_m = after_m.max(zero).min(tips_m * STEP).min(left_m);
-        let middle = places.moved(rates, length_m * 0.5);
         let sine = (j.up_m * (F32s::splat(1.0) / up_m)).cross(direction).length();
-        let standing =
-            walkers.prisms.density(middle.barycentric()) * walkers.prisms.twice_area_m2() / j.determinant.abs();
-        let share = (middle.t * (1.0 / mean.tips)).within(0.0, 1.0) * (LAYERS * 4) as f32;
+        let standing = walkers.prisms.density(middle.barycentric()) * walkers.prisms.twice_area_m2();
+        let shares =
+            [share(places.t, mean.tips), share(middle.t, mean.tips), share(places.t + rates.z * length, mean.tips)];
         for (k, kind) in mean.kinds.iter().enumerate() {
             let Some(kind) = kind else { continue };
-            let depth = standing * up_m * width(&kind.width_per_m, share) * kind.slopes.mean_sines(sine) * length_m;
+            let depth = standing * up_m * width(kind, shares) * kind.slopes.mean_sines(sine) * length;
             let finite = moving & depth.lt(F32s::splat(f32::INFINITY));
             walkers.sum[k] = (sum[k] + finite.keep(depth)).row();
         }
-        let walked_m = moving.keep(length_m);
-        let places = places.moved(rates, walked_m);
-        let crossing = (moving & !length_m.lt(after_m)).bits();
+        let walked = moving.keep(length);
+        let places = places.moved(rates, walked);
+        let crossing = (moving & !length.lt(after)).bits();
+        walkers.at_m = moving.select(at_m + nearing * walked, F32s::of(&walkers.at_m)).row();
         walkers.on = moving.bits();
-        walkers.at_m = (at_m + walked_m).row();
         walkers.b = [places.b[0].row(), places.b[1].row()];
         walkers.t = places.t.row();
         if crossing == 0 {
             return;
         }
-        let (side, tips_m) = (side.row(), tips_m.row());
+        let side = side.row();
         for lane in 0..I::LANES {
             if crossing >> lane & 1 == 0 {
                 continue;
@@ -183,7 +212,6 @@ impl Walk<'_, '_> {
                 Some((triangle, opposite)) => {
                     let place = Place { b: [walkers.b[0].0[lane], walkers.b[1].0[lane]], t: walkers.t.0[lane] };
                     walkers.enter(mean, lane, triangle, across(&place, corner, opposite));
-                    walkers.at_m.0[lane] += 1e-8 * tips_m.0[lane];
                 }
                 None => walkers.on &= !(1 << lane),
             }
@@ -191,11 +219,32 @@ impl Walk<'_, '_> {
     }
 }
 
-/// Values of a table at `share` in [0, its last index].
+/// The largest of three sizes.
 #[inline(always)]
-fn width<I: Isa>(table: &[f32; LAYERS * 4 + 1], share: F32s<I>) -> F32s<I> {
-    let low = share.floor().min(F32s::splat((LAYERS * 4 - 1) as f32));
+fn size<I: Isa>(v: Vec3s<I>) -> F32s<I> {
+    v.x.abs().max(v.y.abs()).max(v.z.abs())
+}
+
+/// Mean width of a kind of hair between two heights, the first and the last of three, in intervals of its tables.
+#[inline(always)]
+fn width<I: Isa>(kind: &Kind, [from, middle, to]: [F32s<I>; 3]) -> F32s<I> {
+    let rise = to - from;
+    let steep = rise.abs().gt(F32s::splat(1.0));
+    let mean = (at(&kind.width_below_per_m, to) - at(&kind.width_below_per_m, from)) / rise;
+    steep.select(mean, at(&kind.width_per_m, middle))
+}
+
+/// A height in intervals of tables.
+#[inline(always)]
+fn share<I: Isa>(t: F32s<I>, tips: f32) -> F32s<I> {
+    (t * (1.0 / tips)).within(0.0, 1.0) * (LAYERS * 4) as f32
+}
+
+/// Values of a table at places in [0, its last index].
+#[inline(always)]
+fn at<I: Isa>(table: &Table, place: F32s<I>) -> F32s<I> {
+    let low = place.floor().min(F32s::splat((LAYERS * 4 - 1) as f32));
     let at = low.to_whole();
     let (from, to) = (at.gather(table), at.plus_splat(1).gather(table));
-    from + (share - low) * (to - from)
+    from + (place - low) * (to - from)
 }

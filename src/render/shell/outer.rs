@@ -17,6 +17,14 @@ pub struct Face {
     pub corners: [Place; 3],
 }
 
+impl Face {
+    /// Corners, counter-clockwise for who enters there where the prism is not inside out.
+    pub fn unturned(&self) -> [Place; 3] {
+        let [a, b, c] = self.corners;
+        if self.turned { [a, c, b] } else { [a, b, c] }
+    }
+}
+
 /// Corner `i` of a triangle, counted round, at a height.
 pub fn corner(i: usize, t: f32) -> Place {
     Place { b: [f32::from(u8::from(i % 3 == 1)), f32::from(u8::from(i % 3 == 2))], t }
