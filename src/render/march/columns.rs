@@ -5,12 +5,13 @@ use crate::render::shell::Shell;
 use std::sync::OnceLock;
 
 /// Columns of depths by level that several prisms share: over vertices and over the middles of edges, where every prism's lattice has
-/// corners. Filled by whichever prism is first to need one, from the prism that has the lowest number.
+/// corners. Filled by whichever prism is first to need one, from the prism that lies first in
+/// space: their order in the mesh must not show.
 #[derive(Debug)]
 pub(super) struct Columns {
     /// By position class.
     vertices: Vec<OnceLock<Box<[u8]>>>,
-    /// First triangle around each position class, and which of its corners that is.
+    /// The first triangle around each position class, and which of its corners that is.
     first: Vec<Option<(u32, usize)>>,
     /// By triangle and the corner opposite to the edge.
     edges: Vec<[OnceLock<Box<[u8]>>; 3]>,
@@ -33,12 +34,15 @@ impl Site<'_> {
 impl Columns {
     pub(super) fn new(shell: &Shell<'_>) -> Self {
         let classes = &shell.skin.position_class;
-        let mut first = vec![None; classes.len()];
+        let mut first: Vec<Option<(u32, usize)>> = vec![None; classes.len()];
         for (t, triangle) in shell.skin.triangles.iter().enumerate() {
             // Beside borders depths are followed further, and each prism's are its own.
             if !shell.neighbours.at_border(t as u32) {
                 for (corner, &v) in triangle.iter().enumerate() {
-                    first[classes[v as usize] as usize].get_or_insert((t as u32, corner));
+                    let first = &mut first[classes[v as usize] as usize];
+                    if first.is_none_or(|(other, _)| place(shell, t as u32) < place(shell, other)) {
+                        *first = Some((t as u32, corner));
+                    }
                 }
             }
         }
@@ -75,8 +79,18 @@ impl Columns {
         let Some(other) = there_and_back.filter(|other| !shell.neighbours.at_border(other.triangle)) else {
             return own;
         };
-        let (triangle, corner) = (triangle, corner).min((other.triangle, usize::from(other.corner)));
+        let (triangle, corner) = if place(shell, other.triangle) < place(shell, triangle) {
+            (other.triangle, usize::from(other.corner))
+        } else {
+            (triangle, corner)
+        };
         let b = (Vec3::ONE - Vec3::AXES[corner]) * 0.5;
         Site { triangle, b, shared: Some(&self.edges[triangle as usize][corner]) }
     }
+}
+
+/// Where a triangle lies, for an order in space.
+fn place(shell: &Shell<'_>, triangle: u32) -> [f32; 3] {
+    let [p, q, r] = shell.skin.corners_m(triangle as usize);
+    (p + q + r).to_array()
 }
