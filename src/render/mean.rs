@@ -15,6 +15,7 @@ use crate::math::Vec3;
 use crate::math::lanes::{self, MOST};
 use faces::{Faces, Meeting};
 use rayon::prelude::*;
+use std::cmp::Ordering::Equal;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -50,9 +51,9 @@ struct Column {
 /// moved by a twelfth of its second difference. Undercoat's falls in a straight line already.
 fn straightened(depths: &Depths) -> Depths {
     let mut moved = *depths;
-    for i in 1..LAYERS {
-        let [below, here, above] = [i - 1, i, i + 1].map(|i| depths[i][1]);
-        moved[i][1] = (here - (below - 2.0 * here + above) / 12.0).max(0.0);
+    for (moved, around) in moved[1..].iter_mut().zip(depths.windows(3)) {
+        let [below, here, above] = [0, 1, 2].map(|i| around[i][1]);
+        moved[1] = (here - (below - 2.0 * here + above) / 12.0).max(0.0);
     }
     moved
 }
@@ -253,7 +254,7 @@ impl<'a> MeanShadow<'a> {
                 let off = |meeting: &Meeting| (meeting.at_m - end_m).abs();
                 let nearest = (0..meetings.len()).min_by(|&a, &b| off(&meetings[a]).total_cmp(&off(&meetings[b])));
                 if let Some(same) = nearest.filter(|&i| off(&meetings[i]) < MUCH * end_m + SAME * tips_m) {
-                    meetings.swap_remove(same);
+                    meetings.remove(same);
                 }
                 others.extend(meetings.into_iter().map(|meeting| Other { height: i, far_m, meeting }));
             }
@@ -269,7 +270,16 @@ impl<'a> MeanShadow<'a> {
         let (foot_m, offset_m) = (self.shell.skin.positions_m[class as usize], self.shell.offsets_m[class as usize]);
         let tips_m = self.tips * offset_m.length();
         let mut meetings = Vec::new();
-        let far_m = self.faces.meetings(foot_m + offset_m * t, NEAR * tips_m, &mut meetings);
+        let near_m = NEAR * tips_m;
+        let far_m = self.faces.meetings(foot_m + offset_m * t, near_m, &mut meetings);
+        // An edge is met in both of its faces. Of these, the one that lies first in space: their order must not show.
+        let place = |meeting: &Meeting| {
+            let [p, q, r] = self.shell.skin.corners_m(meeting.triangle as usize);
+            (p + q + r).to_array()
+        };
+        meetings
+            .sort_by(|a, b| a.at_m.total_cmp(&b.at_m).then_with(|| place(a).partial_cmp(&place(b)).unwrap_or(Equal)));
+        meetings.dedup_by(|next, kept| next.at_m - kept.at_m < near_m);
         Column { own: self.start(class, t, far_m), tips_m, far_m, meetings }
     }
 

@@ -135,7 +135,7 @@ impl Faces {
         reach.add(x, y, 0.0);
         let (columns, rows) = self.grid.touched(&reach);
         let (Some(column), Some(row)) = (columns.last(), rows.last()) else { return f32::INFINITY };
-        let (mut skin, mut far_m): (Option<Meeting>, f32) = (None, f32::INFINITY);
+        let mut far_m = f32::INFINITY;
         for &face in self.bins.of(row * self.grid.columns + column) {
             let face = face as usize;
             let [a, b, c] = self.corners[face].map(|p| p - from);
@@ -148,13 +148,13 @@ impl Faces {
             }
             let e = e / area;
             let at_m = e.x * a.z + e.y * b.z + e.z * c.z;
-            if !(at_m > near_m && at_m < far_m) {
+            if !(at_m > near_m && at_m <= far_m) {
                 continue;
             }
             let is_skin = face < self.triangles;
             let leaves = (area > 0.0) != is_skin;
             if is_skin {
-                (skin, far_m) = (None, at_m);
+                far_m = at_m;
             }
             if !leaves {
                 continue;
@@ -162,15 +162,9 @@ impl Faces {
             let (triangle, [p, q, r]) = self.places(face);
             let mix = |p: f32, q: f32, r: f32| e.x * p + e.y * q + e.z * r;
             let b = [0, 1].map(|i| mix(p.b[i], q.b[i], r.b[i]));
-            let meeting = Meeting { at_m, triangle, place: Place { b, t: mix(p.t, q.t, r.t) } };
-            if is_skin {
-                skin = Some(meeting);
-            } else {
-                out.push(meeting);
-            }
+            out.push(Meeting { at_m, triangle, place: Place { b, t: mix(p.t, q.t, r.t) } });
         }
-        out.retain(|meeting| meeting.at_m < far_m);
-        out.extend(skin);
+        out.retain(|meeting| meeting.at_m <= far_m);
         far_m
     }
 }
