@@ -126,43 +126,32 @@ impl Bvh {
     }
 
     /// Calls `visit` for every item whose box a ray meets between `near` and `far`; `visit` returns a new `far`.
-    pub fn visit(&self, ray: &Ray, near: f64, mut far: f64, mut visit: impl FnMut(u32, f64) -> f64) {
-        let mut stack = [0_u32; 64];
-        let mut depth = usize::from(!self.nodes.is_empty());
-        while depth > 0 {
-            depth -= 1;
-            let index = stack[depth] as usize;
-            let node = &self.nodes[index];
-            if node.bounds.span(ray, near, far).is_none() {
-                continue;
-            }
-            if node.count > 0 {
-                for &item in &self.items[node.first as usize..(node.first + node.count) as usize] {
-                    far = visit(item, far);
-                }
-            } else {
-                stack[depth] = index as u32 + node.first;
-                stack[depth + 1] = index as u32 + 1;
-                depth += 2;
-            }
-        }
+    pub fn visit(&self, ray: &Ray, near: f64, far: f64, mut visit: impl FnMut(u32, f64) -> f64) {
+        let meets = |bounds: &Bounds, far: f64| bounds.span(ray, near, far).is_some();
+        self.descend(far, meets, |item, far| *far = visit(item, *far));
     }
 
     /// Calls `visit` for every item in leaves whose boxes a beam meets.
     pub fn visit_beam(&self, beam: &Beam, mut visit: impl FnMut(u32)) {
+        self.descend((), |bounds, ()| beam.meets(bounds), |item, ()| visit(item));
+    }
+
+    /// Calls `visit` for every item in leaves whose boxes are met, given what `visit` has made of `known`.
+    #[inline(always)]
+    fn descend<K: Copy>(&self, mut known: K, meets: impl Fn(&Bounds, K) -> bool, mut visit: impl FnMut(u32, &mut K)) {
         let mut stack = [0_u32; 64];
         let mut depth = usize::from(!self.nodes.is_empty());
         while depth > 0 {
             depth -= 1;
             let index = stack[depth] as usize;
             let node = &self.nodes[index];
-            if !beam.meets(&node.bounds) {
+            if !meets(&node.bounds, known) {
                 continue;
             }
             if node.count > 0 {
-                self.items[node.first as usize..(node.first + node.count) as usize]
-                    .iter()
-                    .for_each(|&item| visit(item));
+                for &item in &self.items[node.first as usize..(node.first + node.count) as usize] {
+                    visit(item, &mut known);
+                }
             } else {
                 stack[depth] = index as u32 + node.first;
                 stack[depth + 1] = index as u32 + 1;
