@@ -78,6 +78,12 @@ impl Mesh {
         self.triangles[t].map(|v| self.positions_m[v as usize])
     }
 
+    /// Where triangle `t` lies, thrice, m: which of several triangles comes first must not depend on their order in the mesh.
+    pub fn order_in_space(&self, t: usize) -> [f32; 3] {
+        let [p, q, r] = self.corners_m(t);
+        (p + q + r).to_array()
+    }
+
     /// Mean length of triangle `t`'s edges, m.
     pub fn mean_edge_m(&self, t: usize) -> f32 {
         let corners = self.corners_m(t);

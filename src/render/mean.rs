@@ -47,17 +47,6 @@ struct Column {
     meetings: Vec<Meeting>,
 }
 
-/// Depths whose straight lines from height to height keep in the mean to what they are read from, which is hollow: each is
-/// moved by a twelfth of its second difference. Undercoat's falls in a straight line already.
-fn straightened(depths: &Depths) -> Depths {
-    let mut moved = *depths;
-    for (moved, around) in moved[1..].iter_mut().zip(depths.windows(3)) {
-        let [below, here, above] = [0, 1, 2].map(|i| around[i][1]);
-        moved[1] = (here - (below - 2.0 * here + above) / 12.0).max(0.0);
-    }
-    moved
-}
-
 /// Hair that a ray passes besides what is around its vertex, by where the ray leaves it.
 struct Other {
     /// Number of the height at which the ray begins.
@@ -69,6 +58,17 @@ struct Other {
 /// Optical depths towards the key light at heights from the skin to the tips: of the undercoat that a march from prism to
 /// prism meets, and of all other hair.
 pub type Depths = [[f32; 2]; LAYERS + 1];
+
+/// Depths whose straight lines from height to height keep in the mean to what they are read from, which is hollow: each is
+/// moved by a twelfth of its second difference. Undercoat's falls in a straight line already.
+fn straightened(depths: &Depths) -> Depths {
+    let mut moved = *depths;
+    for (moved, around) in moved[1..].iter_mut().zip(depths.windows(3)) {
+        let [below, here, above] = [0, 1, 2].map(|i| around[i][1]);
+        moved[1] = (here - (below - 2.0 * here + above) / 12.0).max(0.0);
+    }
+    moved
+}
 
 /// Values at heights up to the tips.
 type Table = [f32; LAYERS * 4 + 1];
@@ -272,13 +272,10 @@ impl<'a> MeanShadow<'a> {
         let mut meetings = Vec::new();
         let near_m = NEAR * tips_m;
         let far_m = self.faces.meetings(foot_m + offset_m * t, near_m, &mut meetings);
-        // An edge is met in both of its faces. Of these, the one that lies first in space: their order must not show.
-        let place = |meeting: &Meeting| {
-            let [p, q, r] = self.shell.skin.corners_m(meeting.triangle as usize);
-            (p + q + r).to_array()
-        };
+        // An edge is met in both of its faces. Of these, the one that lies first in space.
+        let order = |meeting: &Meeting| self.shell.skin.order_in_space(meeting.triangle as usize);
         meetings
-            .sort_by(|a, b| a.at_m.total_cmp(&b.at_m).then_with(|| place(a).partial_cmp(&place(b)).unwrap_or(Equal)));
+            .sort_by(|a, b| a.at_m.total_cmp(&b.at_m).then_with(|| order(a).partial_cmp(&order(b)).unwrap_or(Equal)));
         meetings.dedup_by(|next, kept| next.at_m - kept.at_m < near_m);
         Column { own: self.start(class, t, far_m), tips_m, far_m, meetings }
     }
@@ -302,7 +299,7 @@ impl<'a> MeanShadow<'a> {
 
     /// Where a ray begins above a vertex: in the prism around it into which the light's direction leads.
     fn start(&self, class: u32, t: f32, far_m: f32) -> Option<Ray> {
-        let mut best: Option<([f32; 4], Ray)> = None;
+        let mut best: Option<(f32, Ray)> = None;
         for &triangle in &self.around[class as usize] {
             let corners = self.shell.skin.triangles[triangle as usize];
             let Some(corner) = corners.iter().position(|&v| self.shell.skin.position_class[v as usize] == class) else {
@@ -313,16 +310,17 @@ impl<'a> MeanShadow<'a> {
             let rates = jacobian.rates(self.to_light);
             let rates = [-rates.x - rates.y, rates.x, rates.y];
             let least = rates[(corner + 1) % 3].min(rates[(corner + 2) % 3]);
-            // Of equals, the one that lies first in space: their order in the mesh must not show.
-            let [p, q, r] = self.shell.skin.corners_m(triangle as usize);
-            let key = [least, -(p + q + r).x, -(p + q + r).y, -(p + q + r).z];
-            if best.as_ref().is_none_or(|(most, ..)| key.partial_cmp(most) == Some(std::cmp::Ordering::Greater)) {
+            // Of equals, the one that lies first in space.
+            let order = |t: u32| self.shell.skin.order_in_space(t as usize);
+            let leads =
+                |&(most, ref ray): &(f32, Ray)| least > most || least == most && order(triangle) < order(ray.triangle);
+            if best.as_ref().is_none_or(leads) {
                 let onwards = jacobian.determinant > 0.0;
-                best = Some((key, Ray { triangle, place, origin_m: jacobian.at_m, far_m, onwards }));
+                best = Some((least, Ray { triangle, place, origin_m: jacobian.at_m, far_m, onwards }));
             }
         }
         // Where no prism lies that way, the light comes over an open border.
-        let ([least, ..], ray) = best?;
+        let (least, ray) = best?;
         (least > -1e-3 / self.shell.undercoat.height_m).then_some(ray)
     }
 

@@ -4,9 +4,8 @@ use crate::math::Vec3;
 use crate::render::shell::Shell;
 use std::sync::OnceLock;
 
-/// Columns of depths by level that several prisms share: over vertices and over the middles of edges, where every prism's lattice has
-/// corners. Filled by whichever prism is first to need one, from the prism that lies first in
-/// space: their order in the mesh must not show.
+/// Columns of depths by level that several prisms share: over vertices and over the middles of edges, where every prism's
+/// lattice has corners. Filled by whichever prism is first to need one, from the prism that lies first in space.
 #[derive(Debug)]
 pub(super) struct Columns {
     /// By position class.
@@ -33,6 +32,7 @@ impl Site<'_> {
 
 impl Columns {
     pub(super) fn new(shell: &Shell<'_>) -> Self {
+        let order = |t: u32| shell.skin.order_in_space(t as usize);
         let classes = &shell.skin.position_class;
         let mut first: Vec<Option<(u32, usize)>> = vec![None; classes.len()];
         for (t, triangle) in shell.skin.triangles.iter().enumerate() {
@@ -40,7 +40,7 @@ impl Columns {
             if !shell.neighbours.at_border(t as u32) {
                 for (corner, &v) in triangle.iter().enumerate() {
                     let first = &mut first[classes[v as usize] as usize];
-                    if first.is_none_or(|(other, _)| place(shell, t as u32) < place(shell, other)) {
+                    if first.is_none_or(|(other, _)| order(t as u32) < order(other)) {
                         *first = Some((t as u32, corner));
                     }
                 }
@@ -79,7 +79,8 @@ impl Columns {
         let Some(other) = there_and_back.filter(|other| !shell.neighbours.at_border(other.triangle)) else {
             return own;
         };
-        let (triangle, corner) = if place(shell, other.triangle) < place(shell, triangle) {
+        let order = |t: u32| shell.skin.order_in_space(t as usize);
+        let (triangle, corner) = if order(other.triangle) < order(triangle) {
             (other.triangle, usize::from(other.corner))
         } else {
             (triangle, corner)
@@ -87,10 +88,4 @@ impl Columns {
         let b = (Vec3::ONE - Vec3::AXES[corner]) * 0.5;
         Site { triangle, b, shared: Some(&self.edges[triangle as usize][corner]) }
     }
-}
-
-/// Where a triangle lies, for an order in space.
-fn place(shell: &Shell<'_>, triangle: u32) -> [f32; 3] {
-    let [p, q, r] = shell.skin.corners_m(triangle as usize);
-    (p + q + r).to_array()
 }
