@@ -154,17 +154,19 @@ impl Walk<'_, '_> {
         // Back to the line by the shortest way across the curve, which folds leave as short as it is elsewhere.
         let off_m = direction * at_m - from_origin_m;
         let back = j.rates(off_m);
-        let along = back.dot(rates) / rates.dot(rates);
-        let aside = back - rates * along;
+        let fastest = size(rates);
+        // Rates have the size of areas, whose squares vanish on tiny skins.
+        let way = rates * (F32s::splat(1.0) / fastest);
+        let along = back.dot(way) / way.dot(way);
+        let aside = back - way * along;
         let near = size(aside).lt(F32s::splat(MOST_BACK));
         let places = places.moved(aside, near.keep(F32s::splat(1.0)));
-        let at_m = at_m - near.keep(along * nearing);
+        let at_m = at_m - near.keep(along * (nearing / fastest));
         walkers.passed |= (Mask::from_bits(walkers.on) & !nearing.gt(zero) & !at_m.gt(zero)).bits();
         let left_m = nearing.gt(zero).select(F32s::of(&walkers.far_m) - at_m, at_m);
         let tips_m = j.up_m.length() * mean.tips;
         let sum = [F32s::of(&walkers.sum[0]), F32s::of(&walkers.sum[1])];
         let light = !(sum[0] + sum[1]).gt(F32s::splat(DARK));
-        let fastest = size(rates);
         let moving = Mask::from_bits(walkers.on)
             & fastest.gt(zero)
             & fastest.lt(F32s::splat(f32::INFINITY))
