@@ -7,7 +7,7 @@ use crate::data::strands::Strands;
 use crate::math::lanes::{self, F32s, Isa, Scalar, Vec3Row};
 use crate::render::bins::TILE;
 use crate::render::strands::ribbon::{self, NARROW, Narrow, Window};
-use crate::render::strands::{Fragment, Knot, Parts, Streak, radiance_at};
+use crate::render::strands::{Fragment, Knot, Parts, radiance_at};
 
 /// Draws pieces of strands into a tile, the nearest first.
 pub(super) struct Brush<'a, 'p> {
@@ -128,10 +128,7 @@ impl Brush<'_, '_> {
             first += I::LANES as i32;
             if self.guard.count() > before {
                 let radiance = radiance_at(&piece.looks, F32s::<I>::of(&sites.s)).rows();
-                for lane in 0..u32::BITS - inside.leading_zeros() {
-                    let lane = lane as usize;
-                    self.guard.show(Streak { radiance: radiance.lane(lane), stroke }, sites.s.0[lane]);
-                }
+                self.guard.show(&radiance, &sites.s, stroke, (u32::BITS - inside.leading_zeros()) as usize);
             }
         }
     }
@@ -156,8 +153,8 @@ impl Brush<'_, '_> {
                 pass.before_skin(&piece.a, &piece.b, share.linear, share.pixel, z_m, skin, pixel)
             });
             if self.guard.count() > before {
-                let radiance = radiance_at(&piece.looks, F32s::<Scalar>::of(&sites.s)).rows().lane(0);
-                self.guard.show(Streak { radiance, stroke }, sites.s.0[0]);
+                let radiance = radiance_at(&piece.looks, F32s::<Scalar>::of(&sites.s)).rows();
+                self.guard.show(&radiance, &sites.s, stroke, 1);
             }
         });
     }

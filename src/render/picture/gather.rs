@@ -1,6 +1,7 @@
 //! The fragments of guard hair in one tile, pixel by pixel, each in its order of depth.
 
 use crate::math::Vec3;
+use crate::math::lanes::{MOST, Row, Vec3Row};
 use crate::render::bins::TILE;
 use crate::render::resolve::{HIDDEN, settle};
 use crate::render::strands::{Fragment, Streak};
@@ -17,9 +18,10 @@ pub(super) struct Gathered {
     /// Pieces of which something may be seen.
     pieces: Vec<u32>,
     strokes: Vec<Stroke>,
+    /// What fragments show, and where along the hair each streak lies, in [0, 1]; longer than `streak_count` says.
     streaks: Vec<Streak>,
-    /// Where along the hair each streak lies, in [0, 1].
     along: Vec<f32>,
+    streak_count: usize,
     /// Fragments as they came; longer than `count` says.
     loose: Vec<Fragment>,
     /// Where each of them falls.
@@ -69,6 +71,7 @@ impl Default for Gathered {
             strokes: Vec::new(),
             streaks: Vec::new(),
             along: Vec::new(),
+            streak_count: 0,
             loose: Vec::new(),
             places: Vec::new(),
             count: 0,
@@ -89,9 +92,7 @@ impl Gathered {
         self.hidden = HIDDEN * opaque;
         self.pieces.clear();
         self.strokes.clear();
-        self.streaks.clear();
-        self.along.clear();
-        self.count = 0;
+        (self.count, self.streak_count) = (0, 0);
         for (at, fill) in self.pixels.iter_mut().enumerate() {
             let [limit_m, clear_m] = limits_m(at);
             *fill = Fill { limit_m, clear_m, through: 1.0, last_m: 0.0, count: 0 };
@@ -161,14 +162,23 @@ impl Gathered {
     /// The number of the next streak.
     #[inline(always)]
     pub(super) fn next_streak(&self) -> u32 {
-        self.streaks.len() as u32
+        self.streak_count as u32
     }
 
-    /// Says what the fragments of the next streak show, and where along the hair it lies.
+    /// Says what the fragments of the next `count` streaks of `stroke` show, at most [`MOST`], and where along the hair they lie.
     #[inline(always)]
-    pub(super) fn show(&mut self, streak: Streak, s: f32) {
-        self.streaks.push(streak);
-        self.along.push(s);
+    pub(super) fn show(&mut self, radiance: &Vec3Row, s: &Row, stroke: u32, count: usize) {
+        let at = self.streak_count;
+        if self.streaks.len() < at + MOST {
+            self.streaks.resize(2 * (at + MOST), Streak::default());
+            self.along.resize(self.streaks.len(), 0.0);
+        }
+        // All lanes are written, which is quicker than to count.
+        for (lane, streak) in self.streaks[at..at + MOST].iter_mut().enumerate() {
+            *streak = Streak { radiance: radiance.lane(lane), stroke };
+        }
+        self.along[at..at + MOST].copy_from_slice(&s.0);
+        self.streak_count = at + count;
     }
 
     /// The number of the next stroke.
