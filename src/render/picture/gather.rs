@@ -1,7 +1,7 @@
 //! The fragments of guard hair in one tile, pixel by pixel, each in its order of depth.
 
 use crate::math::Vec3;
-use crate::math::lanes::{MOST, Row, Vec3Row};
+use crate::math::lanes::{self, MOST, Row, Vec3Row};
 use crate::render::bins::TILE;
 use crate::render::resolve::{HIDDEN, settle};
 use crate::render::strands::{Fragment, Streak};
@@ -202,6 +202,12 @@ impl Gathered {
     #[inline(always)]
     pub(super) fn streak(&self, fragment: &Fragment) -> &Streak {
         &self.streaks[fragment.streak as usize]
+    }
+
+    /// Lets memory bring what a pixel's fragments show.
+    #[inline(always)]
+    pub(super) fn call(&self, pixel: usize) {
+        self.of(pixel).iter().for_each(|fragment| lanes::prefetch(self.streak(fragment)));
     }
 
     /// Where along its hair a fragment lies, in [0, 1].

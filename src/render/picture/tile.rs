@@ -111,6 +111,7 @@ impl Pass<'_> {
     fn compose_pixels(&self, place: &Place<'_>, scratch: &Scratch, out: &mut FilmRows<'_>) {
         let Settings { layers, blending, opaque, .. } = *self.settings;
         for (at, x, y) in place.pixels() {
+            scratch.guard.call((at + 1) % (TILE * TILE));
             let skin_face = || self.skin_face(x, y, place.skin.triangle[at]);
             let face = |f: &Fragment| self.hair_face(f, &scratch.guard);
             let (mut fragments, stretches) = (scratch.guard.of(at), &scratch.stretches[at]);

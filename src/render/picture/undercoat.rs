@@ -3,7 +3,7 @@
 use super::gather::Gathered;
 use crate::data::film::Layers;
 use crate::math::Vec3;
-use crate::math::lanes::{F32s, Isa, MOST, Mask, Row, Vec3Row, Vec3s, Work};
+use crate::math::lanes::{self, F32s, Isa, MOST, Mask, Row, Vec3Row, Vec3s, Work};
 use crate::render::march::light::UndercoatShader;
 use crate::render::march::prisms::Prisms;
 use crate::render::march::volume::Volume;
@@ -159,6 +159,9 @@ impl<I: Isa, const ALL: bool> Traveller<I> for Sight<'_, ALL> {
         if let Some(guard) = self.look.veiled {
             let pixel = current.pixel as usize;
             self.hairs[lane] = (guard.of(pixel), guard.veil(pixel));
+            // Asked for after a step or more.
+            guard.of(pixel).iter().step_by(4).for_each(lanes::prefetch);
+            guard.veil(pixel).iter().step_by(16).for_each(lanes::prefetch);
         }
         Some(current.journey)
     }
