@@ -15,7 +15,7 @@ override FILL: bool = false;
 
 // Share of what a hair covers at most below which a corner of it is left out.
 const LEAST_SHARE: f32 = 0.01;
-// Share of what a ribbon covers of a row, at most of a pixel, that is not worth a fragment of its own.
+// Share of what a ribbon covers of a row that is not worth a fragment of its own.
 const CORNER: f32 = 0.0625;
 // Pixels that one thread looks at, at most: some drivers end loops that run longer.
 const MOST_PIXELS: u32 = 60000u;
@@ -43,7 +43,7 @@ fn ramp(v: f32, drift: f32) -> f32 {
 // What a ribbon covers of a row up to `x` from its middle; corners are given to the next pixel.
 fn covered_up_to(x: f32, half: f32, drift: f32) -> f32 {
     let width = 2.0 * half;
-    let corner = CORNER * min(width, 1.0);
+    let corner = max(min(CORNER * width, 1.0 - width), 0.0);
     let covered = ramp(x + half, drift) - ramp(x - half, drift);
     let more = select(0.0, covered, covered > corner);
     return select(more, width, more > width - corner);

@@ -91,7 +91,7 @@ fn sweep<const FLAT: bool>(a: Point, b: Point, bounds: Bounds, mut emit: impl Fn
         let end = floor(-(centre + reach)).saturating_neg().min(bounds.minor[1]);
         let (low_edge, high_edge) = (centre - half, centre + half);
         let width = high_edge - low_edge;
-        let corner = CORNER * width.min(1.0);
+        let corner = (CORNER * width).min(1.0 - width).max(0.0);
         let covered_up_to = |x: f32| {
             let covered = ramp(x - low_edge, drift, per_drift) - ramp(x - high_edge, drift, per_drift);
             let more = if covered > corner { covered } else { 0.0 };
@@ -110,8 +110,8 @@ fn sweep<const FLAT: bool>(a: Point, b: Point, bounds: Bounds, mut emit: impl Fn
     }
 }
 
-/// Share of what a ribbon covers of a row, at most of a pixel, that is not worth a fragment of its own: such corners are given to
-/// the next pixel. As in `render/guard.wgsl`.
+/// Share of what a ribbon covers of a row that is not worth a fragment of its own: such corners are given to the next pixel, as far as
+/// that has room for any. As in `render/guard.wgsl`.
 const CORNER: f32 = 1.0 / 16.0;
 
 /// The lanes' numbers.
@@ -241,7 +241,8 @@ impl<I: Isa> Across<I> {
     #[inline(always)]
     fn new(edges: [F32s<I>; 2], drift: [F32s<I>; 2]) -> Self {
         let width = edges[1] - edges[0];
-        Self { edges, drift, width, corner: width.min(F32s::splat(1.0)) * CORNER }
+        let room = F32s::splat(1.0) - width;
+        Self { edges, drift, width, corner: (width * CORNER).min(room).max(F32s::splat(0.0)) }
     }
 
     /// What is covered up to `x`, but for corners.
