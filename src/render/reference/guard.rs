@@ -97,13 +97,26 @@ impl<'a> Guard<'a> {
     /// Of candidates nearer than `far_m`, those that are seen on the line at `at`, a column or a row, from its beginning to its end.
     pub fn strips(&self, line: &Line, column: bool, at: f64, some: &[Candidate], far_m: f64, out: &mut Vec<Strip>) {
         out.clear();
+        let (plane, ahead) = (line.base.cross(line.step).normalize(), (line.base + 0.5 * line.step).normalize());
         for candidate in some.iter().take_while(|candidate| candidate.near_m < far_m) {
-            let Candidate { across, near_m, strand, piece } = *candidate;
+            let Candidate { across, strand, piece, .. } = *candidate;
             let [from, to] = across[usize::from(!column)];
             if at < from || at > to {
                 continue;
             }
             let ([from_m, to_m], radius_m) = self.ends(strand, piece);
+            // The line's rays meet it where its axis is no farther from their plane than it is thick.
+            let ends = [from_m, to_m].map(|end_m| end_m - line.eye_m);
+            let widest_m = radius_m[0].max(radius_m[1]);
+            let [a, b] = ends.map(|end| end.dot(plane));
+            let [first, last] = [-widest_m, widest_m].map(|beside_m| (beside_m - a) / (b - a));
+            let [first, last] = [first.min(last).max(0.0), first.max(last).min(1.0)];
+            if first > last {
+                continue;
+            }
+            let near_m =
+                [first, last].map(|s| ends[0].lerp(ends[1], s).dot(ahead)).into_iter().fold(f64::INFINITY, f64::min)
+                    - widest_m;
             let Some([from, to]) = line.extent(from_m, to_m, radius_m) else { continue };
             let x = [from.max(0.0), to.min(1.0)];
             if x[0] < x[1] {
