@@ -56,12 +56,12 @@ impl Film {
         Self {
             width,
             height,
-            radiance: vec![Vec3::ZERO; n],
+            radiance: bytemuck::zeroed_vec(n),
             alpha: vec![0.0; n],
             depth_m: vec![0.0; depth],
-            albedo: vec![Vec3::ZERO; all],
-            tangent: vec![Vec3::ZERO; all],
-            normal: vec![Vec3::ZERO; all],
+            albedo: bytemuck::zeroed_vec(all),
+            tangent: bytemuck::zeroed_vec(all),
+            normal: bytemuck::zeroed_vec(all),
             guard: vec![0.0; all],
             undercoat: vec![0.0; all],
         }

@@ -3,6 +3,7 @@
 use crate::data::film::Film;
 use crate::data::image::{Image8, srgb_from_linear, unorm8};
 use crate::math::Vec3;
+use rayon::prelude::*;
 
 /// How light becomes a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,9 @@ impl Default for Development {
     }
 }
 
+/// Pixels that a thread takes on at least.
+const PIXELS_AT_ONCE: usize = 1 << 12;
+
 /// Develops to RGBA8: sRGB coding, straight alpha.
 ///
 /// Tones follow Reinhard et al. 2002, equation (4), on the largest channel, so that hues stay.
@@ -28,7 +32,8 @@ pub fn develop(film: &Film, development: &Development) -> Image8 {
     let mut image = Image8::new(film.width as u32, film.height as u32, 4);
     let scale = libm::exp2f(development.exposure_ev);
     let white2 = development.white * development.white;
-    for ((out, &radiance), &alpha) in image.pixels.chunks_exact_mut(4).zip(&film.radiance).zip(&film.alpha) {
+    let pixels = image.pixels.par_chunks_exact_mut(4).zip(&film.radiance).zip(&film.alpha);
+    pixels.with_min_len(PIXELS_AT_ONCE).for_each(|((out, &radiance), &alpha)| {
         let (light, alpha) = match development.background {
             Some(behind) => (radiance * scale + behind * (1.0 - alpha), 1.0),
             None => (radiance * scale / alpha.max(1e-6), alpha),
@@ -39,6 +44,6 @@ pub fn develop(film: &Film, development: &Development) -> Image8 {
             *byte = unorm8(srgb_from_linear(value.clamp(0.0, 1.0)));
         }
         out[3] = unorm8(alpha);
-    }
+    });
     image
 }

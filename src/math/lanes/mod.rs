@@ -20,7 +20,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 pub const MOST: usize = 8;
 
 /// Numbers of all lanes in memory, where single lanes are written; those past an instruction set's last lane are unused.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Zeroable)]
 #[repr(C, align(32))]
 pub struct Row(pub [f32; MOST]);
 

@@ -5,7 +5,7 @@ use crate::math::Vec3;
 use std::ops::{Add, Mul, Sub};
 
 /// Vectors of all lanes in memory, where single lanes are written.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Zeroable)]
 pub struct Vec3Row {
     /// First coordinates.
     pub x: Row,

@@ -201,14 +201,14 @@ impl<'a> Pass<'a> {
     /// What each strand may touch; nothing where skin hides it.
     fn strand_reaches(&self, whole: &Grid, far_m: &[f32]) -> Vec<Reach> {
         let Some((strands, _)) = &self.guard else { return Vec::new() };
+        let knots = || vec![Knot::default(); strands.points_per_strand];
         (0..strands.len())
             .into_par_iter()
-            .map_init(Vec::new, |knots, strand| {
+            .map_init(knots, |knots, strand| {
                 let widening = self.thinning.widening(strands, strand);
                 if widening <= 0.0 {
                     return Reach::NOTHING;
                 }
-                knots.clear();
                 project::knots(strands, strand, widening, &self.view, knots);
                 let mut all = Reach::NOTHING;
                 for pair in knots.windows(2) {
@@ -228,23 +228,33 @@ impl<'a> Pass<'a> {
     fn bands(&self, whole: &Grid, reaches: &[Reach]) -> Vec<Grid> {
         let points = self.guard.as_ref().map_or(0, |(strands, _)| strands.points_per_strand);
         let per_strand = points * (size_of::<Knot>() + 12) + size_of::<Vec3Row>() + 8;
-        let mut starting = vec![0_usize; whole.rows];
-        let mut crossing = vec![0_isize; whole.rows + 1];
-        for rows in reaches.iter().map(|reach| whole.touched(reach).1).filter(|rows| !rows.is_empty()) {
-            starting[rows.start] += 1;
-            crossing[rows.start] += 1;
-            crossing[rows.end] -= 1;
-        }
+        // By row: strands that start there, and how many more start than have ended above.
+        let none = || vec![(0_usize, 0_isize); whole.rows + 1];
+        let counts = reaches.par_iter().fold(none, |mut counts, reach| {
+            let rows = whole.touched(reach).1;
+            if !rows.is_empty() {
+                counts[rows.start].0 += 1;
+                counts[rows.start].1 += 1;
+                counts[rows.end].1 -= 1;
+            }
+            counts
+        });
+        let counts = counts.reduce(none, |mut all, some| {
+            for (all, some) in all.iter_mut().zip(some) {
+                *all = (all.0 + some.0, all.1 + some.1);
+            }
+            all
+        });
         let mut bands = Vec::new();
         let (mut first, mut held, mut running) = (0, 0_usize, 0_isize);
-        for row in 0..whole.rows {
+        for (row, &(starting, crossing)) in counts[..whole.rows].iter().enumerate() {
             let entered = running.max(0) as usize;
-            if row > first && (held + starting[row]) * per_strand > self.settings.band_bytes {
+            if row > first && (held + starting) * per_strand > self.settings.band_bytes {
                 bands.push(Grid { first_row: first, rows: row - first, ..*whole });
                 (first, held) = (row, entered);
             }
-            held += starting[row];
-            running += crossing[row];
+            held += starting;
+            running += crossing;
             // Strands that end above the next row are no longer carried.
             running = running.max(0);
         }
@@ -266,29 +276,24 @@ impl<'a> Pass<'a> {
         const CHUNK: usize = 512;
         let points = strands.points_per_strand;
         let size = visible.len() * points;
-        let (mut knots, mut looks) = (vec![Knot::default(); size], vec![Vec3Row::default(); visible.len()]);
-        visible
-            .par_chunks(CHUNK)
-            .zip(knots.par_chunks_mut(CHUNK * points).zip(looks.par_chunks_mut(CHUNK)))
-            .for_each_init(Default::default, |scratch: &mut (Vec<Knot>, Vec<Vec3Row>), (chunk, (knots, looks))| {
-                let (some_knots, some_looks) = scratch;
-                some_knots.clear();
-                some_looks.clear();
-                for &strand in chunk {
+        // Memory of zeros comes page by page to the threads that first write it.
+        let (mut knots, mut looks) = (bytemuck::zeroed_vec(size), bytemuck::zeroed_vec(visible.len()));
+        visible.par_chunks(CHUNK).zip(knots.par_chunks_mut(CHUNK * points).zip(looks.par_chunks_mut(CHUNK))).for_each(
+            |(chunk, (knots, looks))| {
+                for (&strand, knots) in chunk.iter().zip(knots.chunks_exact_mut(points)) {
                     let widening = self.thinning.widening(strands, strand as usize);
-                    project::knots(strands, strand as usize, widening, &self.view, some_knots);
+                    project::knots(strands, strand as usize, widening, &self.view, knots);
                 }
-                shader.strands(chunk, some_looks);
-                knots.copy_from_slice(some_knots);
-                looks.copy_from_slice(some_looks);
-            });
+                shader.strands(chunk, looks);
+            },
+        );
         let bins = Bins::new(grid, knots.len(), |i| {
             if i % points == points - 1 {
                 return Reach::NOTHING;
             }
             project::reach(&self.view, &knots[i], &knots[i + 1])
         });
-        let ids = visible.iter().map(|&strand| strands.id[strand as usize]).collect();
+        let ids = visible.par_iter().map(|&strand| strands.id[strand as usize]).collect();
         Band { strands: visible, knots, looks, ids, bins }
     }
 }

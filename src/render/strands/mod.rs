@@ -38,7 +38,7 @@ fn between<I: Isa>(row: &Row, low: U32s<I>, part: F32s<I>) -> F32s<I> {
 }
 
 /// A point of a strand on the picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Zeroable)]
 pub struct Knot {
     /// Pixel coordinates.
     pub x: f32,

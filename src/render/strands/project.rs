@@ -6,11 +6,11 @@ use crate::math::Vec3;
 use crate::render::bins::Reach;
 use crate::render::view::View;
 
-/// Appends the knots of one strand, drawn `widening` times as wide as it is.
-pub fn knots(strands: &Strands, strand: usize, widening: f32, view: &View, out: &mut Vec<Knot>) {
+/// The knots of one strand, drawn `widening` times as wide as it is, into `out`, one for each of its points.
+pub fn knots(strands: &Strands, strand: usize, widening: f32, view: &View, out: &mut [Knot]) {
     let points = strands.points_of_m(strand);
     let last = points.len() - 1;
-    for (i, &point) in points.iter().enumerate() {
+    for (i, (&point, out)) in points.iter().zip(out).enumerate() {
         let radius_m = widening * strands.root_radius_m[strand] * strands.profile.radius_factor(i as f32 / last as f32);
         let mut p = view.camera_from_world(point);
         if p.z <= view.near_m {
@@ -22,7 +22,7 @@ pub fn knots(strands: &Strands, strand: usize, widening: f32, view: &View, out: 
                 None => p,
             };
         }
-        out.push(knot(view, p, radius_m));
+        *out = knot(view, p, radius_m);
     }
 }
 

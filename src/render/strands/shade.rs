@@ -101,8 +101,8 @@ impl<'a> GuardShader<'a> {
         Ok(Self { pelt, strands, lighting, lobes, normals, mean, volume, eye_m, albedo_share, top_m, above, sites })
     }
 
-    /// Appends the looks of some strands, root first.
-    pub fn strands(&self, strands: &[u32], out: &mut Vec<Vec3Row>) {
+    /// The looks of some strands, root first, into `out`, a row for each.
+    pub fn strands(&self, strands: &[u32], out: &mut [Vec3Row]) {
         lanes::run(Shade { shader: self, strands, out });
     }
 
@@ -237,7 +237,7 @@ fn log<I: Isa>(radiance: F32s<I>) -> F32s<I> {
 struct Shade<'a, 'o> {
     shader: &'a GuardShader<'a>,
     strands: &'a [u32],
-    out: &'o mut Vec<Vec3Row>,
+    out: &'o mut [Vec3Row],
 }
 
 impl lanes::Work for Shade<'_, '_> {
@@ -245,9 +245,8 @@ impl lanes::Work for Shade<'_, '_> {
 
     #[inline(always)]
     fn run<I: Isa>(self) {
-        for &strand in self.strands {
-            let looks = self.shader.strand::<I>(strand as usize);
-            self.out.push(looks);
+        for (&strand, out) in self.strands.iter().zip(self.out) {
+            *out = self.shader.strand::<I>(strand as usize);
         }
     }
 }
