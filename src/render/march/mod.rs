@@ -235,13 +235,18 @@ fn advance<'v, I: Isa, T: Traveller<I>>(
     let walking = moving & length_m.gt(zero);
 
     let from = From { j, places, rates, at_m, direction };
-    let mut steps = volume.steps(&flight.prisms, &flight.blocks, &from, length_m);
-    let too_deep = walking & steps.depth.gt(depth * 2.0) & length_m.gt(least_m);
-    if too_deep.bits() != 0 {
+    let mut shortened = false;
+    // Asked for at one place, so that its code is there once.
+    let steps = loop {
+        let steps = volume.steps(&flight.prisms, &flight.blocks, &from, length_m);
+        let too_deep = walking & steps.depth.gt(depth * 2.0) & length_m.gt(least_m);
+        if shortened || too_deep.bits() == 0 {
+            break steps;
+        }
         let shorter_m = (length_m * depth / steps.depth).max(least_m);
         length_m = too_deep.select(shorter_m, length_m);
-        steps = volume.steps(&flight.prisms, &flight.blocks, &from, length_m);
-    }
+        shortened = true;
+    };
     let per_depth_m = length_m / steps.depth.max(F32s::splat(1e-9));
     flight.per_depth_m = walking.select(per_depth_m, F32s::of(&flight.per_depth_m)).row();
     let seen = walking & steps.depth.gt(zero);
