@@ -53,9 +53,9 @@ impl Grid {
                 return 0..0;
             }
             // Casts to an integer cut off, and saturate; NaN becomes 0.
-            let from = at(reach.from[axis]) as usize;
+            let from = at(reach.from[axis]).max(0.0) as i32 as usize;
             let last = at(reach.to[axis]);
-            let to = if last >= 0.0 { (last as usize).saturating_add(1) } else { 0 };
+            let to = if last >= 0.0 { (last as i32 as usize) + 1 } else { 0 };
             from.min(count)..to.min(count)
         };
         (span(0, 0, self.columns), span(1, self.first_row, self.rows))

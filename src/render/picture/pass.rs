@@ -210,12 +210,7 @@ impl<'a> Pass<'a> {
                     return Reach::NOTHING;
                 }
                 project::knots(strands, strand, widening, &self.view, knots);
-                let mut all = Reach::NOTHING;
-                for pair in knots.windows(2) {
-                    let piece = project::reach(&self.view, &pair[0], &pair[1]);
-                    all.from = [all.from[0].min(piece.from[0]), all.from[1].min(piece.from[1])];
-                    all.to = [all.to[0].max(piece.to[0]), all.to[1].max(piece.to[1])];
-                }
+                let all = project::whole_reach(&self.view, knots);
                 let nearest = knots.iter().map(|k| k.z_m).fold(f32::INFINITY, f32::min);
                 let (columns, mut rows) = whole.touched(&all);
                 let seen = rows.any(|row| columns.clone().any(|column| nearest < far_m[row * whole.columns + column]));

@@ -52,10 +52,12 @@ pub struct Knot {
 
 /// A share of a pixel that a hair covers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
 pub struct Fragment {
+    /// Source index of the hair; before the depth, so that both are read as one number to be sorted by.
+    id: u32,
     /// Depth along the optical axis, m, > 0.
     z_m: f32,
-    id: u32,
     /// As [`Parts`].
     parts: u32,
     /// What it shows: index of a [`Streak`], in the order of drawing.

@@ -34,6 +34,21 @@ fn knot(view: &View, camera_m: Vec3, radius_m: f32) -> Knot {
     Knot { x: pixel.x, y: pixel.y, z_m: camera_m.z, half_px: radius_m * view.focal_px / camera_m.z }
 }
 
+/// What the pieces between the knots of a strand may touch together.
+pub fn whole_reach(view: &View, knots: &[Knot]) -> Reach {
+    let mut all = Reach::NOTHING;
+    if knots.iter().all(|k| k.z_m > view.near_m) {
+        knots.iter().for_each(|k| all.add(k.x, k.y, k.half_px * std::f32::consts::SQRT_2));
+        return all;
+    }
+    for pair in knots.windows(2) {
+        let piece = reach(view, &pair[0], &pair[1]);
+        all.from = [all.from[0].min(piece.from[0]), all.from[1].min(piece.from[1])];
+        all.to = [all.to[0].max(piece.to[0]), all.to[1].max(piece.to[1])];
+    }
+    all
+}
+
 /// What the piece between two knots may touch; nothing where both lie behind the near plane or on it.
 pub fn reach(view: &View, a: &Knot, b: &Knot) -> Reach {
     let mut reach = Reach::NOTHING;
