@@ -15,8 +15,6 @@ override FILL: bool = false;
 
 // Share of what a hair covers at most below which a corner of it is left out.
 const LEAST_SHARE: f32 = 0.01;
-// Share of what a ribbon covers of a row that is not worth a fragment of its own.
-const CORNER: f32 = 0.0625;
 // Pixels that one thread looks at, at most: some drivers end loops that run longer.
 const MOST_PIXELS: u32 = 60000u;
 
@@ -38,15 +36,6 @@ fn ramp(v: f32, drift: f32) -> f32 {
         return v;
     }
     return 0.5 * (v + half) * (v + half) / drift;
-}
-
-// What a ribbon covers of a row up to `x` from its middle; corners are given to the next pixel.
-fn covered_up_to(x: f32, half: f32, drift: f32) -> f32 {
-    let width = 2.0 * half;
-    let corner = max(min(CORNER * width, 1.0 - width), 0.0);
-    let covered = ramp(x + half, drift) - ramp(x - half, drift);
-    let more = select(0.0, covered, covered > corner);
-    return select(more, width, more > width - corner);
 }
 
 // Whether a hair lies before the skin of a pixel's middle or, on the side that hair grows on, of its own place; seen from
@@ -166,9 +155,9 @@ fn guard(
             return;
         }
         let place = mix(start_px, end_px, linear);
-        var before = covered_up_to(f32(begin) - centre, half, drift);
+        var before = ramp(f32(begin) - (centre - half), drift) - ramp(f32(begin) - (centre + half), drift);
         for (var x = begin; x < past; x++) {
-            let after = covered_up_to(f32(x + 1) - centre, half, drift);
+            let after = ramp(f32(x + 1) - (centre - half), drift) - ramp(f32(x + 1) - (centre + half), drift);
             let coverage = (after - before) * share;
             before = after;
             if coverage <= least {

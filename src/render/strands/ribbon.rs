@@ -90,13 +90,7 @@ fn sweep<const FLAT: bool>(a: Point, b: Point, bounds: Bounds, mut emit: impl Fn
         let begin = floor(centre - reach).max(bounds.minor[0]);
         let end = floor(-(centre + reach)).saturating_neg().min(bounds.minor[1]);
         let (low_edge, high_edge) = (centre - half, centre + half);
-        let width = high_edge - low_edge;
-        let corner = (CORNER * width).min(1.0 - width).max(0.0);
-        let covered_up_to = |x: f32| {
-            let covered = ramp(x - low_edge, drift, per_drift) - ramp(x - high_edge, drift, per_drift);
-            let more = if covered > corner { covered } else { 0.0 };
-            if more > width - corner { width } else { more }
-        };
+        let covered_up_to = |x: f32| ramp(x - low_edge, drift, per_drift) - ramp(x - high_edge, drift, per_drift);
         let mut before = covered_up_to(begin as f32);
         for x in begin..end {
             let after = covered_up_to((x + 1) as f32);
@@ -109,10 +103,6 @@ fn sweep<const FLAT: bool>(a: Point, b: Point, bounds: Bounds, mut emit: impl Fn
         }
     }
 }
-
-/// Share of what a ribbon covers of a row that is not worth a fragment of its own: such corners are given to the next pixel, as far as
-/// that has room for any. As in `render/guard.wgsl`.
-const CORNER: f32 = 1.0 / 16.0;
 
 /// The lanes' numbers.
 const RAMP: Row = Row([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
@@ -204,15 +194,14 @@ impl Narrow {
         let zero = F32s::splat(0.0);
         let count = share.gt(zero).keep((end - begin).max(zero).min(F32s::splat(NARROW as f32)));
         let (mut coverage, mut covered) = ([Row::default(); NARROW], [0; NARROW]);
-        let across = Across::new([low_edge, high_edge], [drift, per_drift]);
-        let mut before = across.covered_up_to(begin);
+        let mut before = ramps(begin - low_edge, drift, per_drift) - ramps(begin - high_edge, drift, per_drift);
         for k in 0..NARROW {
             let wanted = count.gt(F32s::splat(k as f32));
             if wanted.bits() == 0 {
                 break;
             }
             let x = begin + (k + 1) as f32;
-            let after = across.covered_up_to(x);
+            let after = ramps(x - low_edge, drift, per_drift) - ramps(x - high_edge, drift, per_drift);
             let part = ((after - before) * share).min(F32s::splat(1.0));
             (coverage[k], covered[k]) = (part.row(), (wanted & part.gt(zero)).bits());
             before = after;
@@ -225,33 +214,6 @@ impl Narrow {
             linear: linear.row(),
             along: along.row(),
         }
-    }
-}
-
-/// Ribbons from side to side, a row in each lane.
-struct Across<I: Isa> {
-    edges: [F32s<I>; 2],
-    /// How far the middle moves within the row, and one over it.
-    drift: [F32s<I>; 2],
-    width: F32s<I>,
-    corner: F32s<I>,
-}
-
-impl<I: Isa> Across<I> {
-    #[inline(always)]
-    fn new(edges: [F32s<I>; 2], drift: [F32s<I>; 2]) -> Self {
-        let width = edges[1] - edges[0];
-        let room = F32s::splat(1.0) - width;
-        Self { edges, drift, width, corner: (width * CORNER).min(room).max(F32s::splat(0.0)) }
-    }
-
-    /// What is covered up to `x`, but for corners.
-    #[inline(always)]
-    fn covered_up_to(&self, x: F32s<I>) -> F32s<I> {
-        let ([low, high], [drift, per_drift]) = (self.edges, self.drift);
-        let covered = ramps(x - low, drift, per_drift) - ramps(x - high, drift, per_drift);
-        let more = covered.gt(self.corner).keep(covered);
-        more.gt(self.width - self.corner).select(self.width, more)
     }
 }
 
