@@ -241,6 +241,11 @@ fn the_reference_sees_places_a_thousandth_of_the_hair_beside_a_ray() {
 }
 
 #[test]
+fn the_reference_sees_folds_a_fiftieth_beside_a_ray() {
+    assert!(crate::oracle::stretches_missed(0.02) > 0.02);
+}
+
+#[test]
 fn the_reference_sees_hair_a_thousandth_too_wide() {
     assert!(crate::oracle::largest_gap(1.001) > 1e-4);
 }

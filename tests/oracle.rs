@@ -12,6 +12,7 @@ use furrier::render::reference::bvh::Ray;
 use furrier::render::reference::cone;
 use furrier::render::reference::medium::{Counted, Medium};
 use furrier::render::reference::shell::Place;
+use furrier::render::reference::sight::Sight;
 use furrier::render::reference::{self, Settings};
 
 /// Optical depth of the reference's medium along a ray from above through hair of one length on level skin.
@@ -172,6 +173,44 @@ pub fn places_missed(beside: f64) -> usize {
 #[test]
 fn a_ray_finds_every_place_of_the_shell_that_it_passes() {
     assert_eq!(places_missed(0.0), 0);
+}
+
+/// Of random prisms that fold over themselves, the share of what rays pass of them, each sheet by itself, that the stretches of
+/// rays `beside` away are off by.
+pub fn stretches_missed(beside: f64) -> f64 {
+    const STEPS: usize = 2000;
+    let mut random = Stream::new(3);
+    let mut unit = || f64::from(random.unit());
+    let (mut passed, mut off) = (0.0, 0.0);
+    for _ in 0..300 {
+        let feet = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p + 0.2 * DVec3::new(unit(), unit(), unit()));
+        let middle = (feet[0] + feet[1] + feet[2]) / 3.0;
+        // Hair leans across the middle: somewhere below the top it crosses.
+        let offsets = feet.map(|p| DVec3::Z + (middle - p) * (1.0 + 2.0 * unit()) + DVec3::new(unit(), unit(), unit()));
+        let (u, v, t) = (0.5 * unit(), 0.5 * unit(), unit());
+        let through: DVec3 = (0..3).map(|i| (feet[i] + offsets[i] * t) * [1.0 - u - v, u, v][i]).sum();
+        let direction = DVec3::new(unit() - 0.5, unit() - 0.5, unit() - 0.5).normalize();
+        let ray = Ray::new(through - direction * 2.0, direction);
+        let away = Ray::new(ray.origin_m + direction.any_orthonormal_vector() * beside, direction);
+        let whole = [0.0, 4.0];
+        let mut found = 0.0;
+        Sight::new(&away, 0, &(feet, offsets), [0.0, 1.0]).spans(whole, whole, |[from, to], middle| {
+            found += (to - from) * middle.iter().flatten().count() as f64;
+        });
+        let sight = Sight::new(&ray, 0, &(feet, offsets), [0.0, 1.0]);
+        let step = whole[1] / STEPS as f64;
+        let at = |i: usize| sight.spots(step * (i as f64 + 0.5)).iter().flatten().count();
+        let expected = step * (0..STEPS).map(at).sum::<usize>() as f64;
+        passed += expected;
+        off += (found - expected).abs();
+    }
+    off / passed
+}
+
+#[test]
+fn a_ray_is_followed_to_where_a_prism_folds() {
+    let missed = stretches_missed(0.0);
+    assert!(missed < 5e-3, "{missed}");
 }
 
 /// How far two seeds of the reference are apart.

@@ -8,6 +8,7 @@ pub mod along;
 pub mod bvh;
 pub mod cone;
 pub mod crowd;
+pub mod fold;
 pub mod guard;
 pub mod kind;
 pub mod lens;

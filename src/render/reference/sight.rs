@@ -3,9 +3,10 @@
 //! Seen along the ray, corner i is at height t at (xᵢ, yᵢ)(t) across it and at the distance zᵢ(t), all linear in t. The ray
 //! passes the triangle at t where the shares cᵢ(t) = xⱼ yₖ − yⱼ xₖ have one sign, and there bᵢ = cᵢ / Σ c and its distance is
 //! s = Σ zᵢ cᵢ / Σ c. So the heights at a distance s are roots of the cubic Σ zᵢ cᵢ − s Σ c, and the ray passes the side opposite to corner i at a
-//! root of the quadratic cᵢ.
+//! root of the quadratic cᵢ. Where it folds back along the ray, s turns (`fold`).
 
 use super::bvh::Ray;
+use super::fold;
 use super::shell::{Place, Spot};
 use crate::math::{DVec2, DVec3};
 
@@ -50,7 +51,7 @@ impl Sight {
     /// the distances `inside`.
     pub fn spans(&self, [near_m, far_m]: [f64; 2], inside: [f64; 2], mut visit: impl FnMut([f64; 2], &Spots)) {
         // Distances at which the ray passes the slab's faces.
-        let mut cuts = [0.0_f64; 10];
+        let mut cuts = [0.0_f64; 14];
         let mut count = 0;
         let mut offer = |at_m: f64| {
             if at_m > near_m && at_m < far_m {
@@ -80,6 +81,8 @@ impl Sight {
                 }
             }
         }
+        // Where the prism folds back, both of its sheets end.
+        fold::turns(&self.depth, &self.area, self.ends, |t| offer(cube(&self.depth, t) / square(&self.area, t)));
         // Each part between two cuts is tried by its middle.
         let (begin, end) = (inside[0] <= near_m, inside[1] >= far_m);
         if begin {
