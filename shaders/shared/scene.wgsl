@@ -6,7 +6,7 @@
 // No triangle, no item.
 const NOTHING: u32 = 0xffffffffu;
 // Heights at which tables are kept, less one.
-const TABLE: u32 = 64u;
+const TABLE: u32 = 256u;
 
 // One kind of hair as a layer over flat skin.
 struct Kind {

@@ -3,7 +3,7 @@
 use crate::math::lanes::{F32s, Isa};
 
 /// Intervals of a table; a power of two.
-const INTERVALS: usize = 64;
+const INTERVALS: usize = 256;
 
 /// Values at even distances, linear in between.
 #[derive(Clone, Debug, PartialEq)]
