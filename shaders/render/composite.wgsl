@@ -30,17 +30,28 @@ struct Front {
     undercoat: f32,
 }
 
+// A light that ends between two looks bends their curve no more than this, lest it swings over.
+const MOST_BEND: f32 = 3.0;
+
 // Logarithm of the opaque hair's radiance: shadow, and radiance with it, goes exponentially from look to look.
 fn log_look(index: u32) -> vec3<f32> {
     return vec3(looks[3u * index], looks[3u * index + 1u], looks[3u * index + 2u]);
 }
 
-// Radiance of a strand at s in [0, 1] along it.
+fn bend_at(index: u32) -> vec3<f32> {
+    return log_look(index - 1u) - 2.0 * log_look(index) + log_look(index + 1u);
+}
+
+// Radiance of a strand at s in [0, 1] along it: its logarithm is a curve through the looks.
 fn radiance_at(strand: u32, s: f32) -> vec3<f32> {
     let at = s * s * f32(LOOKS - 1u);
     let low = min(u32(at), LOOKS - 2u);
-    let index = strand * LOOKS + low;
-    return exp(mix(log_look(index), log_look(index + 1u), at - f32(low)));
+    let part = at - f32(low);
+    let first = strand * LOOKS;
+    let line = mix(log_look(first + low), log_look(first + low + 1u), part);
+    // From the middle of three looks; at the ends the nearest three.
+    let bend = bend_at(first + max(low, 1u)) + bend_at(first + min(low + 1u, LOOKS - 2u));
+    return exp(line - clamp(bend, vec3(-2.0 * MOST_BEND), vec3(2.0 * MOST_BEND)) * (part - part * part) * 0.25);
 }
 
 fn opacity_of(fragment: Fragment) -> f32 {

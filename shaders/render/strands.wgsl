@@ -9,9 +9,6 @@
 // Logarithms of radiance, LOOKS of each strand, three numbers each.
 @group(3) @binding(0) var<storage, read_write> looks: array<f32>;
 
-// A point that no light reaches must not brighten its neighbours.
-const MOST_BEND: f32 = 0.25;
-
 // Mean of the two pieces that meet in point `i` of a strand, twice their length.
 fn step_at(first: u32, i: u32) -> vec3<f32> {
     let last = scene.points_per_strand - 1u;
@@ -90,21 +87,7 @@ fn shade(
     }
     let strand = strands[index];
     let first = index * scene.points_per_strand;
-    let begin = index * LOOKS;
-    var before = log_look(strand, first, 0u);
-    var here = log_look(strand, first, 1u);
-    // Looks are moved so that straight lines between them keep to the curve in the mean: they stray from it by a twelfth of
-    // its second difference.
-    var bend = vec3(0.0);
-    for (var i = 1u; i < LOOKS - 1u; i++) {
-        let next = log_look(strand, first, i + 1u);
-        bend = clamp((before - here - here + next) / 12.0, vec3(-MOST_BEND), vec3(MOST_BEND));
-        if i == 1u {
-            put(begin, before - bend);
-        }
-        put(begin + i, here - bend);
-        before = here;
-        here = next;
+    for (var i = 0u; i < LOOKS; i++) {
+        put(index * LOOKS + i, log_look(strand, first, i));
     }
-    put(begin + LOOKS - 1u, here - bend);
 }

@@ -21,20 +21,41 @@ pub fn look_s(i: usize) -> f32 {
     (i as f32 / (LOOKS - 1) as f32).sqrt()
 }
 
-/// Radiance at each `s` in [0, 1] along a hair.
+/// Radiance at each `s` in [0, 1] along a hair: its logarithm is a curve through the looks.
 #[inline(always)]
 pub fn radiance_at<I: Isa>(looks: &Vec3Row, s: F32s<I>) -> Vec3s<I> {
     let at = s * s * (LOOKS - 1) as f32;
     let low = at.floor().within(0.0, (LOOKS - 2) as f32);
-    let (low, part) = (low.to_whole(), at - low);
-    Vec3s::new(between(&looks.x, low, part), between(&looks.y, low, part), between(&looks.z, low, part))
+    let part = at - low;
+    // From the middle of three looks; at the ends the nearest three.
+    let around = [low.max(F32s::splat(1.0)), (low + 1.0).min(F32s::splat((LOOKS - 2) as f32))].map(F32s::to_whole);
+    let places = Places { low: low.to_whole(), part, hollow: (part - part * part) * 0.25, around };
+    Vec3s::new(places.of(&looks.x), places.of(&looks.y), places.of(&looks.z))
 }
 
-/// e to the power that lies `part` of the way from number `low` to the next.
-#[inline(always)]
-fn between<I: Isa>(row: &Row, low: U32s<I>, part: F32s<I>) -> F32s<I> {
-    let (from, to) = (low.pick(row), low.plus_splat(1).pick(row));
-    (from + (to - from) * part).exp()
+/// A light that ends between two looks bends their curve no more than this, lest it swings over.
+const MOST_BEND: f32 = 3.0;
+
+/// Where between looks.
+struct Places<I: Isa> {
+    low: U32s<I>,
+    part: F32s<I>,
+    /// By how much a curve of unit second differences at both looks lies below the straight line between them, halved.
+    hollow: F32s<I>,
+    /// The looks whose second differences count.
+    around: [U32s<I>; 2],
+}
+
+impl<I: Isa> Places<I> {
+    /// e to the power of the curve through logarithms.
+    #[inline(always)]
+    fn of(&self, row: &Row) -> F32s<I> {
+        let at = |i: U32s<I>, by: u32| i.plus_splat(by).pick(row);
+        let (from, to) = (at(self.low, 0), at(self.low, 1));
+        let bends = self.around.map(|i| at(i, u32::MAX) - at(i, 0) * 2.0 + at(i, 1));
+        let bend = (bends[0] + bends[1]).within(-2.0 * MOST_BEND, 2.0 * MOST_BEND);
+        (from + (to - from) * self.part - bend * self.hollow).exp()
+    }
 }
 
 /// A point of a strand on the picture.

@@ -157,7 +157,6 @@ impl<'a> GuardShader<'a> {
                 *look = log_radiance.lane(lane);
             }
         }
-        settle(&mut looks);
         let mut row = Vec3Row::default();
         looks.iter().enumerate().for_each(|(i, &look)| row.set(i, look));
         row
@@ -203,27 +202,6 @@ impl<'a> GuardShader<'a> {
     #[inline(always)]
     fn ramp<I: Isa>(&self, s: F32s<I>) -> Vec3s<I> {
         ramps(&self.strands.profile.ramp, s)
-    }
-}
-
-/// A point that no light reaches must not brighten its neighbours.
-const MOST_BEND: Vec3 = Vec3::splat(0.25);
-
-/// Moves points so that straight lines between them keep to the curve in the mean rather than at its points: they stray from
-/// it by a twelfth of its second difference.
-fn settle(looks: &mut [Vec3]) {
-    let [first, second, third, ..] = looks else { return };
-    let bend = |a: Vec3, b: Vec3, c: Vec3| ((a - b - b + c) / 12.0).clamp(-MOST_BEND, MOST_BEND);
-    let mut last_bend = bend(*first, *second, *third);
-    let mut before = *first;
-    *first -= last_bend;
-    for i in 1..looks.len() {
-        let here = looks[i];
-        if let Some(next) = looks.get(i + 1) {
-            last_bend = bend(before, here, *next);
-        }
-        looks[i] -= last_bend;
-        before = here;
     }
 }
 
