@@ -81,7 +81,7 @@ fn mean_shadow_is_a_flat_layers_far_from_borders_and_nothing_on_one_towards_the_
     for share in [0.0, 0.25, 0.5] {
         let height_m = share / shadow.share(1.0, 1.0);
         let expected = layers.iter().map(|layer| layer.above(height_m)).sum::<f32>() * 0.6 / 0.8;
-        let found: f32 = shadow.at(middle, Vec3::splat(1.0 / 3.0), share).iter().sum();
+        let found = shadow.depth(middle, Vec3::splat(1.0 / 3.0), share);
         assert!((found / expected - 1.0).abs() < 0.02, "at {share}: {found}, flat {expected}");
     }
     let border = pelt.skin.positions_m.iter().map(|p| p.x).fold(f32::MIN, f32::max);
@@ -156,7 +156,7 @@ fn strays_on_a_hat(shadow: impl Fn(&MeanShadow<'_>, &Pelt<'_>, u32, f32, f32) ->
 
 #[test]
 fn mean_shadow_is_the_references_where_a_crown_shades_its_brim() {
-    let strays = strays_on_a_hat(|mean, _, triangle, share, _| mean.at(triangle, Vec3::X, share).iter().sum());
+    let strays = strays_on_a_hat(|mean, _, triangle, share, _| mean.depth(triangle, Vec3::X, share));
     assert!(strays < 0.015, "{strays}");
     // A flat layer's shadow knows of no crown.
     let flat = strays_on_a_hat(|mean, pelt, _, share, cosine| {

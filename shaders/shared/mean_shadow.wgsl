@@ -13,16 +13,24 @@ fn tips_m() -> f32 {
     return max(scene.guard_kind.top_m, scene.undercoat_kind.top_m);
 }
 
-fn of_level(triangle: u32, b: vec3<f32>, level: u32) -> vec2<f32> {
-    let first = triangles[triangle].corners * (2u * (LAYERS + 1u)) + BEFORE * (TABLE + 1u) + 2u * level;
-    let undercoat = vec3(tables[first.x], tables[first.y], tables[first.z]);
-    let guard = vec3(tables[first.x + 1u], tables[first.y + 1u], tables[first.z + 1u]);
-    return vec2(dot(undercoat, b), dot(guard, b));
+// Parts of a depth: undercoat, guard hair, and hair of other limbs.
+fn of_level(corner: u32, level: u32) -> vec3<f32> {
+    let first = 3u * (corner * (LAYERS + 1u) + level) + BEFORE * (TABLE + 1u);
+    return vec3(tables[first], tables[first + 1u], tables[first + 2u]);
 }
 
-// Optical depths of undercoat and guard hair towards the key light, at a height given as a share of the tips'.
+fn of_column(corner: u32, at: f32) -> vec3<f32> {
+    let low = min(u32(at), LAYERS - 1u);
+    return mix(of_level(corner, low), of_level(corner, low + 1u), at - f32(low));
+}
+
+// Optical depths of the undercoat that a march meets and of all other hair towards the key light, at a height given as a share of
+// the tips'. Depths go linearly from vertex to vertex, but what other limbs let through does.
 fn mean_depths(triangle: u32, b: vec3<f32>, share: f32) -> vec2<f32> {
     let at = clamp(share, 0.0, 1.0) * f32(LAYERS);
-    let low = min(u32(at), LAYERS - 1u);
-    return mix(of_level(triangle, b, low), of_level(triangle, b, low + 1u), at - f32(low));
+    let corners = triangles[triangle].corners;
+    let depths = mat3x3(of_column(corners.x, at), of_column(corners.y, at), of_column(corners.z, at));
+    let own = depths * b;
+    let through = dot(exp(-vec3(depths[0].z, depths[1].z, depths[2].z)), b);
+    return vec2(own.x, own.y - log(max(through, 1.1754944e-38)));
 }

@@ -12,7 +12,7 @@ use super::shell::prism::Place;
 use crate::fur::groom::fibre::{Fibre, LENGTH_SPREAD};
 use crate::fur::undercoat::Undercoat;
 use crate::math::Vec3;
-use crate::math::lanes::{self, MOST};
+use crate::math::lanes::{self, F32s, Isa, MOST, Scalar};
 use faces::{Faces, Meeting};
 use rayon::prelude::*;
 use std::cmp::Ordering::Equal;
@@ -55,17 +55,21 @@ struct Other {
     meeting: Meeting,
 }
 
-/// Optical depths towards the key light at heights from the skin to the tips: of the undercoat that a march from prism to
-/// prism meets, and of all other hair.
-pub type Depths = [[f32; 2]; LAYERS + 1];
+/// Parts of a depth: the undercoat that a march from prism to prism meets, guard hair beside it, and hair of other limbs.
+pub const PARTS: usize = 3;
+
+/// Optical depths towards the key light at heights from the skin to the tips, in parts.
+pub type Depths = [[f32; PARTS]; LAYERS + 1];
 
 /// Depths whose straight lines from height to height keep in the mean to what they are read from, which is hollow: each is
 /// moved by a twelfth of its second difference. Undercoat's falls in a straight line already.
 fn straightened(depths: &Depths) -> Depths {
     let mut moved = *depths;
     for (moved, around) in moved[1..].iter_mut().zip(depths.windows(3)) {
-        let [below, here, above] = [0, 1, 2].map(|i| around[i][1]);
-        moved[1] = (here - (below - 2.0 * here + above) / 12.0).max(0.0);
+        for part in 1..PARTS {
+            let [below, here, above] = [0, 1, 2].map(|i| around[i][part]);
+            moved[part] = (here - (below - 2.0 * here + above) / 12.0).max(0.0);
+        }
     }
     moved
 }
@@ -175,15 +179,25 @@ impl<'a> MeanShadow<'a> {
         self.shell.bytes() + self.faces.bytes() + self.cells.len() * size_of::<OnceLock<Depths>>()
     }
 
-    /// Optical depths, as in [`Depths`], in the column over a point of the skin, at a height given as a share of the tips'.
-    pub fn at(&self, triangle: u32, b: Vec3, share: f32) -> [f32; 2] {
-        let at = share.clamp(0.0, 1.0) * LAYERS as f32;
-        let low = (at as usize).min(LAYERS - 1);
-        let [p, q, r] = self.corners(triangle);
-        [0, 1].map(|kind| {
-            let [from, to] = [low, low + 1].map(|i| p[i][kind] * b.x + q[i][kind] * b.y + r[i][kind] * b.z);
-            from + (at - low as f32) * (to - from)
-        })
+    /// Optical depths in the column over a point of the skin, at heights given as shares of the tips': of the undercoat that a march
+    /// meets, and of all other hair. Depths go linearly from vertex to vertex; what other limbs let through does, as the edges of
+    /// their shadows lie anywhere between vertices.
+    #[inline(always)]
+    pub fn at<I: Isa>(&self, triangle: u32, b: Vec3, share: F32s<I>) -> [F32s<I>; 2] {
+        let at = share.within(0.0, 1.0) * LAYERS as f32;
+        let low = at.floor().min(F32s::splat((LAYERS - 1) as f32));
+        let (first, along) = ((low * PARTS as f32).to_whole(), at - low);
+        let (mut own, mut through) = ([F32s::splat(0.0); 2], F32s::splat(f32::MIN_POSITIVE));
+        for (depths, b) in self.corners(triangle).into_iter().zip(b.to_array()) {
+            let part = |part: usize| {
+                let of = |i: usize| first.plus_splat(i as u32).gather(depths.as_flattened());
+                let (from, to) = (of(part), of(part + PARTS));
+                from + (to - from) * along
+            };
+            own = [0, 1].map(|k| own[k] + part(k) * b);
+            through = through + (-part(2)).exp_negative() * b;
+        }
+        [own[0], own[1] - through.log2() * std::f32::consts::LN_2]
     }
 
     fn corners(&self, triangle: u32) -> [&Depths; 3] {
@@ -191,20 +205,21 @@ impl<'a> MeanShadow<'a> {
         skin.triangles[triangle as usize].map(|v| self.cell(skin.position_class[v as usize]))
     }
 
-    /// Depths by vertex, height and kind, for the devices that look them up themselves.
+    /// Depths by vertex, height and part, for the devices that look them up themselves.
     pub fn of_vertices(&self) -> Vec<f32> {
         let classes = &self.shell.skin.position_class;
         classes.par_iter().flat_map_iter(|&class| self.cell(class).as_flattened().iter().copied()).collect()
     }
 
-    /// Optical depth of both kinds at a place of undercoat's shell.
-    pub fn depth(&self, triangle: u32, b: Vec3, t: f32) -> f32 {
-        self.at(triangle, b, t / self.tips).iter().sum()
+    /// Optical depth of all hair, as [`Self::at`].
+    pub fn depth(&self, triangle: u32, b: Vec3, share: f32) -> f32 {
+        let [undercoat, other] = self.at(triangle, b, F32s::<Scalar>::splat(share));
+        (undercoat + other).row().0[0]
     }
 
     /// Depth of all but the undercoat that a march meets, at a place of undercoat's shell.
     pub fn other_depth(&self, triangle: u32, b: Vec3, t: f32) -> f32 {
-        self.at(triangle, b, t / self.tips)[1]
+        self.at(triangle, b, F32s::<Scalar>::splat(t / self.tips))[1].row().0[0]
     }
 
     /// Height in a column, as a share of the tips', of hair `height_m` above skin whose hair is `length` times as long as
@@ -235,7 +250,7 @@ impl<'a> MeanShadow<'a> {
         while end > 0 {
             // Below where no light is left there is none.
             if own[0] + own[1] >= DARK {
-                depths[..end].fill(own);
+                depths[..end].fill([own[0], own[1], 0.0]);
                 break;
             }
             let begin = end.saturating_sub(MOST);
@@ -247,7 +262,7 @@ impl<'a> MeanShadow<'a> {
                 if own[0] + own[1] < DARK {
                     own = found.depths;
                 }
-                depths[i] = own;
+                depths[i] = [own[0], own[1], 0.0];
                 let Column { own: ray, tips_m, far_m, mut meetings } = column;
                 // Where it leaves hair that it has been followed through.
                 let end_m = found.end_m.filter(|_| ray.is_some_and(|ray| ray.onwards)).unwrap_or(f32::NAN);
@@ -292,7 +307,7 @@ impl<'a> MeanShadow<'a> {
             }
             let found = lanes::run(Walk { mean: self, rays: &rays });
             for (other, found) in others.iter().zip(found) {
-                depths[other.height][1] += found.depths.iter().sum::<f32>();
+                depths[other.height][2] += found.depths.iter().sum::<f32>();
             }
         }
     }

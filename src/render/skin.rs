@@ -90,7 +90,7 @@ pub fn look(
         let cosine = light.to_light.dot(normal);
         if cosine > 0.0 {
             let depth = match mean {
-                Some(mean) if i == 0 && !back => mean.at(t, b, 0.0).iter().sum(),
+                Some(mean) if i == 0 && !back => mean.depth(t, b, 0.0),
                 _ => slant_depth(above, light.to_light, normal, lean),
             };
             let shadow = exp_negative(-depth);

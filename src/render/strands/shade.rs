@@ -55,14 +55,10 @@ impl Column<'_> {
     /// Optical depths towards the key light.
     #[inline(always)]
     fn depths<I: Isa>(&self, height_m: F32s<I>) -> F32s<I> {
-        let mut mean = Row::default();
-        if let Some((shadow, share_per_m)) = self.mean {
-            let share = (height_m * share_per_m).row();
-            for (depth, &share) in mean.0[..I::LANES].iter_mut().zip(&share.0) {
-                *depth = shadow.at(self.triangle, self.b, share).iter().sum();
-            }
-        }
-        let mean = F32s::of(&mean);
+        let mean = self.mean.map_or(F32s::splat(0.0), |(shadow, share_per_m)| {
+            let [undercoat, other] = shadow.at(self.triangle, self.b, height_m * share_per_m);
+            undercoat + other
+        });
         let Some((volume, t_per_m, lattices)) = &self.clumped else { return mean };
         let t = height_m * *t_per_m;
         let inside = !t.gt(F32s::splat(1.0));
