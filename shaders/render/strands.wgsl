@@ -21,7 +21,7 @@ fn step_at(first: u32, i: u32) -> vec3<f32> {
 fn depth_of(triangle: u32, b: vec3<f32>, height_m: f32, length: f32) -> f32 {
     let t = height_m / max(scene.undercoat_kind.top_m * length, 1e-30);
     let place = triangles[triangle];
-    if any(place.beyond == vec3(NOTHING)) && place.shadow_at != NOTHING && t <= 1.0 {
+    if place.at_border != 0u && place.shadow_at != NOTHING && t <= 1.0 {
         return key_depth(triangle, b, max(t, 0.0));
     }
     let depths = mean_depths(triangle, b, height_m / max(tips_m() * length, 1e-30));

@@ -104,6 +104,8 @@ struct Triangle {
     shadow_at: u32,
     // Of the skin at rest, m².
     rest_area: f32,
+    // 1 where it reaches an open edge, else 0.
+    at_border: u32,
 }
 
 struct Vertex {

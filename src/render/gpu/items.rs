@@ -26,7 +26,8 @@ pub struct TriangleItem {
     pub shadow_at: u32,
     /// Of the skin at rest, m².
     pub rest_area: f32,
-    pub(super) _pad0: u32,
+    /// 1 where it reaches an open edge, else 0.
+    pub at_border: u32,
 }
 
 /// `Vertex` of `shared/scene.wgsl`.

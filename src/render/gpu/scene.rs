@@ -215,7 +215,7 @@ fn triangle(pelt: &Pelt<'_>, volume: Option<&Volume<'_>>, t: u32) -> TriangleIte
         density_at: NOTHING,
         shadow_at: NOTHING,
         rest_area: pelt.skin.rest_area_m2(t as usize),
-        _pad0: 0,
+        at_border: volume.map_or(0, |v| u32::from(v.shell().neighbours.at_border(t))),
     }
 }
 

@@ -15,6 +15,8 @@ pub struct Beyond {
 #[derive(Clone, Debug, Default)]
 pub struct Neighbours {
     sides: Vec<[Option<Beyond>; 3]>,
+    /// Of each triangle.
+    at_border: Vec<bool>,
 }
 
 impl Neighbours {
@@ -49,26 +51,30 @@ impl Neighbours {
             let [begin, end] = [starts[from as usize], starts[from as usize + 1]].map(|at| at as usize);
             edges[begin..end].iter().find(|(other, _)| *other == to).map(|&(_, beyond)| beyond)
         };
-        let sides = (0..mesh.triangles.len())
-            .map(|t| {
-                let c = classes(t);
-                [0, 1, 2].map(|corner| {
-                    let [from, to] = ends(c, corner);
-                    edge(to, from).filter(|b| b.triangle != t as u32)
-                })
-            })
-            .collect();
-        Self { sides }
+        let mut open = vec![false; mesh.positions_m.len()];
+        let mut side = |t: usize, [from, to]: [u32; 2]| {
+            let beyond = edge(to, from).filter(|b| b.triangle != t as u32);
+            if beyond.is_none() {
+                open[from as usize] = true;
+                open[to as usize] = true;
+            }
+            beyond
+        };
+        let sides =
+            (0..mesh.triangles.len()).map(|t| [0, 1, 2].map(|corner| side(t, ends(classes(t), corner)))).collect();
+        let at_border =
+            (0..mesh.triangles.len()).map(|t| classes(t).iter().any(|&class| open[class as usize])).collect();
+        Self { sides, at_border }
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.sides.len() * size_of::<[Option<Beyond>; 3]>()
+        size_of_val(&self.sides[..]) + size_of_val(&self.at_border[..])
     }
 
-    /// Whether a triangle has an open edge.
+    /// Whether a triangle reaches an open edge, be it with a corner alone.
     pub fn at_border(&self, triangle: u32) -> bool {
-        self.sides[triangle as usize].contains(&None)
+        self.at_border[triangle as usize]
     }
 
     /// Beyond the edge of `triangle` opposite to `corner`.
