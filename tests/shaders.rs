@@ -157,7 +157,16 @@ fn structs_of_kernels_lie_as_in_rust() {
         (
             &strands,
             "Triangle",
-            in_rust!(TriangleItem { corners, density_splits, beyond, shadow_splits, density_at, shadow_at, rest_area }),
+            in_rust!(TriangleItem {
+                corners,
+                density_splits,
+                beyond,
+                shadow_splits,
+                density_at,
+                shadow_at,
+                rest_area,
+                traits
+            }),
         ),
         (
             &strands,

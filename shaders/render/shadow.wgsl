@@ -1,6 +1,6 @@
 // Fills the stored shadow, the optical depth of undercoat, and of guard hair in the mean, towards the key light: one thread
 // per corner of sub-elements and level.
-#import furrier::scene::{scene, triangles, lights}
+#import furrier::scene::{scene, triangles, lights, AT_BORDER}
 #import furrier::prism::{Place, jacobian, corners_of, corner_place}
 #import furrier::undercoat::code_value
 #import furrier::march::{advance, walk_from, Stepping, MOST_STEPS}
@@ -35,7 +35,7 @@ fn shadow(
     let t = f32(level) / f32(scene.layers);
     var walk = walk_from(0.0, triangle, Place(b.yz, t));
     let origin_m = jacobian(walk.prism, walk.place).at_m;
-    let enough = select(DARK, DARK_AT_BORDERS, triangles[triangle].at_border != 0u);
+    let enough = select(DARK, DARK_AT_BORDERS, (triangles[triangle].traits & AT_BORDER) != 0u);
     var depth = 0.0;
     for (var i = 0u; i < MOST_STEPS && walk.alive && depth < enough; i++) {
         // Steps towards the light may be long: what they miss is blurred by the shadow's own resolution.

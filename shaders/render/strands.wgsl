@@ -1,5 +1,5 @@
 // Light on guard hair, one thread per strand, as src/render/strands/shade.rs.
-#import furrier::scene::{scene, triangles, Strand, strands, lights, point_of, normal_at, lean_at, density_at, length_at, unit_or, NOTHING}
+#import furrier::scene::{scene, triangles, Strand, strands, lights, point_of, normal_at, lean_at, density_at, length_at, unit_or, NOTHING, AT_BORDER}
 #import furrier::camera::view
 #import furrier::guard::{LOOKS, guard_ramp, root_of}
 #import furrier::fur_light::{angles_of, cos_of, guard_lobes, shadow_power, slant_depth, sky_depth, terminator, above_both}
@@ -21,7 +21,7 @@ fn step_at(first: u32, i: u32) -> vec3<f32> {
 fn depth_of(triangle: u32, b: vec3<f32>, height_m: f32, length: f32) -> f32 {
     let t = height_m / max(scene.undercoat_kind.top_m * length, 1e-30);
     let place = triangles[triangle];
-    if place.at_border != 0u && place.shadow_at != NOTHING && t <= 1.0 {
+    if (place.traits & AT_BORDER) != 0u && place.shadow_at != NOTHING && t <= 1.0 {
         return key_depth(triangle, b, max(t, 0.0));
     }
     let depths = mean_depths(triangle, b, height_m / max(tips_m() * length, 1e-30));

@@ -1,7 +1,7 @@
 // The key light's shadow in hair as dense as it is in the mean, as src/render/mean.rs keeps it.
 #define_import_path furrier::mean_shadow
 
-#import furrier::scene::{scene, triangles, tables, TABLE}
+#import furrier::scene::{scene, triangles, tables, TABLE, LINEAR}
 
 // Intervals of height up to the tips.
 const LAYERS: u32 = 24u;
@@ -25,12 +25,17 @@ fn of_column(corner: u32, at: f32) -> vec3<f32> {
 }
 
 // Optical depths of the undercoat that a march meets and of all other hair towards the key light, at a height given as a share of
-// the tips'. Depths go linearly from vertex to vertex, but what other limbs let through does.
+// the tips'. What hair lets through is linear from vertex to vertex; but of the hair around depth is, where a trait says so.
 fn mean_depths(triangle: u32, b: vec3<f32>, share: f32) -> vec2<f32> {
     let at = clamp(share, 0.0, 1.0) * f32(LAYERS);
     let corners = triangles[triangle].corners;
-    let depths = mat3x3(of_column(corners.x, at), of_column(corners.y, at), of_column(corners.z, at));
-    let own = depths * b;
-    let through = dot(exp(-vec3(depths[0].z, depths[1].z, depths[2].z)), b);
-    return vec2(own.x, own.y - log(max(through, 1.1754944e-38)));
+    let around = select(1.0, 0.0, (triangles[triangle].traits & LINEAR) != 0u);
+    // By part, of the three corners.
+    let parts = transpose(mat3x3(of_column(corners.x, at), of_column(corners.y, at), of_column(corners.z, at)));
+    let other = parts[2] + parts[1] * around;
+    let all_through = dot(exp(-(other + parts[0] * around)), b);
+    let other_through = dot(exp(-other), b);
+    let depths = -log(max(vec2(all_through, other_through), vec2(1.1754944e-38)));
+    let linear = vec2(dot(parts[0], b), dot(parts[1], b)) * (1.0 - around);
+    return linear + vec2(depths.x - depths.y, depths.y);
 }

@@ -91,6 +91,10 @@ struct Scene {
     lobes: array<Lobe, 3>,
 }
 
+// Traits of triangles: reaches an open edge; depths of the mean shadow of the hair around go linearly over it.
+const AT_BORDER: u32 = 1u;
+const LINEAR: u32 = 2u;
+
 struct Triangle {
     corners: vec3<u32>,
     // Subdivisions of the stored density.
@@ -104,8 +108,8 @@ struct Triangle {
     shadow_at: u32,
     // Of the skin at rest, m².
     rest_area: f32,
-    // 1 where it reaches an open edge, else 0.
-    at_border: u32,
+    // AT_BORDER, LINEAR.
+    traits: u32,
 }
 
 struct Vertex {

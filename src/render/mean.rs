@@ -35,6 +35,13 @@ const SAME: f32 = 0.04;
 /// The same, in ways from the ray's origin: flat faces at a slant to the ray lie farther from prisms' sides.
 const MUCH: f32 = 4.0;
 
+/// Edges of triangles, in heights of the tips, up to which what changes over a triangle is the edge of a shadow.
+const NARROW: f32 = 0.2;
+
+fn goes_linearly(shell: &Shell<'_>, triangle: usize, tips_m: f32) -> bool {
+    shell.neighbours.at_border(triangle as u32) || shell.skin.mean_edge_m(triangle) > NARROW * tips_m
+}
+
 /// A ray to the light from a place above a vertex.
 struct Column {
     /// Through the hair around the vertex.
@@ -132,6 +139,8 @@ pub struct MeanShadow<'a> {
     faces: Faces,
     /// Twice the area of each triangle in the rest pose, m².
     twice_area_m2: Vec<f32>,
+    /// Whether depths of the hair around go linearly over each triangle.
+    linear: Vec<bool>,
     /// Triangles around each vertex's position class.
     around: Vec<Vec<u32>>,
     cells: Vec<OnceLock<Depths>>,
@@ -158,6 +167,7 @@ impl<'a> MeanShadow<'a> {
         let shell = Shell::new(pelt.skin, pelt.fields, of_shell);
         Some(Self {
             faces: Faces::new(&shell, tips, to_light),
+            linear: (0..pelt.skin.triangles.len()).map(|t| goes_linearly(&shell, t, shell_m * tips)).collect(),
             shell,
             tips,
             kinds: [pelt.undercoat, guard].map(|fibre| fibre.map(|fibre| Kind::new(fibre, shell_m, tips))),
@@ -180,24 +190,36 @@ impl<'a> MeanShadow<'a> {
     }
 
     /// Optical depths in the column over a point of the skin, at heights given as shares of the tips': of the undercoat that a march
-    /// meets, and of all other hair. Depths go linearly from vertex to vertex; what other limbs let through does, as the edges of
-    /// their shadows lie anywhere between vertices.
+    /// meets, and of all other hair. What hair lets through is linear from vertex to vertex, as the edges of shadows lie anywhere
+    /// between; but of the hair around depth is, where it grows with the distance from an open border or over triangles wide for
+    /// their hair ([`Self::is_linear`]).
     #[inline(always)]
     pub fn at<I: Isa>(&self, triangle: u32, b: Vec3, share: F32s<I>) -> [F32s<I>; 2] {
         let at = share.within(0.0, 1.0) * LAYERS as f32;
         let low = at.floor().min(F32s::splat((LAYERS - 1) as f32));
         let (first, along) = ((low * PARTS as f32).to_whole(), at - low);
-        let (mut own, mut through) = ([F32s::splat(0.0); 2], F32s::splat(f32::MIN_POSITIVE));
+        let around = if self.linear[triangle as usize] { 0.0 } else { 1.0 };
+        let mut linear = [F32s::splat(0.0); 2];
+        let mut through = [F32s::splat(f32::MIN_POSITIVE); 2];
         for (depths, b) in self.corners(triangle).into_iter().zip(b.to_array()) {
-            let part = |part: usize| {
+            let [undercoat, guard, limbs] = std::array::from_fn(|part| {
                 let of = |i: usize| first.plus_splat(i as u32).gather(depths.as_flattened());
                 let (from, to) = (of(part), of(part + PARTS));
                 from + (to - from) * along
-            };
-            own = [0, 1].map(|k| own[k] + part(k) * b);
-            through = through + (-part(2)).exp_negative() * b;
+            });
+            linear = [linear[0] + undercoat * b, linear[1] + guard * b];
+            let other = limbs + guard * around;
+            through[0] = through[0] + (-(other + undercoat * around)).exp_negative() * b;
+            through[1] = through[1] + (-other).exp_negative() * b;
         }
-        [own[0], own[1] - through.log2() * std::f32::consts::LN_2]
+        let [all, other] = through.map(|through| through.log2() * -std::f32::consts::LN_2);
+        let rest = 1.0 - around;
+        [linear[0] * rest + (all - other), linear[1] * rest + other]
+    }
+
+    /// Whether over a triangle the depth of the hair around it goes linearly, rather than what that lets through.
+    pub fn is_linear(&self, triangle: u32) -> bool {
+        self.linear[triangle as usize]
     }
 
     fn corners(&self, triangle: u32) -> [&Depths; 3] {

@@ -8,6 +8,11 @@ use bytemuck::{Pod, Zeroable};
 /// No triangle, no item: `NOTHING` of `shared/scene.wgsl`.
 pub const NOTHING: u32 = u32::MAX;
 
+/// Traits of triangles: reaches an open edge; depths of the mean shadow of the hair around go linearly over it.
+pub const AT_BORDER: u32 = 1;
+/// As above.
+pub const LINEAR: u32 = 2;
+
 /// `Triangle` of `shared/scene.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -26,8 +31,8 @@ pub struct TriangleItem {
     pub shadow_at: u32,
     /// Of the skin at rest, m².
     pub rest_area: f32,
-    /// 1 where it reaches an open edge, else 0.
-    pub at_border: u32,
+    /// [`AT_BORDER`], [`LINEAR`].
+    pub traits: u32,
 }
 
 /// `Vertex` of `shared/scene.wgsl`.

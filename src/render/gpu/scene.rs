@@ -1,6 +1,6 @@
 //! A pelt on the device: skin, hair and lights, and the shell's stored density and shadow.
 
-use super::items::{InsideItem, LightItem, NOTHING, StrandItem, TriangleItem, VertexItem};
+use super::items::{AT_BORDER, InsideItem, LINEAR, LightItem, NOTHING, StrandItem, TriangleItem, VertexItem};
 use super::kernels::Kernels;
 use super::layout::{BlocksUniform, SceneUniform};
 use crate::error::Result;
@@ -95,7 +95,7 @@ impl GpuScene {
         let mut uniform = SceneUniform::new(pelt, lighting, settings)?;
         let layers = uniform.layers as usize;
         let mut triangles: Vec<TriangleItem> =
-            (0..pelt.skin.triangles.len()).map(|t| triangle(pelt, volume, t as u32)).collect();
+            (0..pelt.skin.triangles.len()).map(|t| triangle(pelt, volume, mean, t as u32)).collect();
         let most_columns = most_bytes.min(gpu.largest_storage_bytes() as usize).min(u32::MAX as usize) / layers;
         let (seen, unseen): (Vec<u32>, Vec<u32>) = match volume {
             Some(volume) => (0..triangles.len() as u32).partition(|&t| may_be_seen(volume, view, t)),
@@ -202,7 +202,9 @@ impl GpuScene {
     }
 }
 
-fn triangle(pelt: &Pelt<'_>, volume: Option<&Volume<'_>>, t: u32) -> TriangleItem {
+fn triangle(pelt: &Pelt<'_>, volume: Option<&Volume<'_>>, mean: Option<&MeanShadow<'_>>, t: u32) -> TriangleItem {
+    let at_border = volume.is_some_and(|v| v.shell().neighbours.at_border(t));
+    let linear = mean.is_some_and(|mean| mean.is_linear(t));
     let beyond = |corner| {
         let side = volume.and_then(|v| v.shell().neighbours.beyond(t, corner));
         side.map_or(NOTHING, |beyond| beyond.triangle << 2 | u32::from(beyond.corner))
@@ -215,7 +217,7 @@ fn triangle(pelt: &Pelt<'_>, volume: Option<&Volume<'_>>, t: u32) -> TriangleIte
         density_at: NOTHING,
         shadow_at: NOTHING,
         rest_area: pelt.skin.rest_area_m2(t as usize),
-        at_border: volume.map_or(0, |v| u32::from(v.shell().neighbours.at_border(t))),
+        traits: u32::from(at_border) * AT_BORDER + u32::from(linear) * LINEAR,
     }
 }
 
