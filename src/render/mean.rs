@@ -12,10 +12,11 @@ use super::shell::prism::Place;
 use crate::fur::groom::fibre::{Fibre, LENGTH_SPREAD};
 use crate::fur::undercoat::Undercoat;
 use crate::math::Vec3;
-use crate::math::lanes::{self, F32s, Isa, MOST, Scalar};
+use crate::math::lanes::{self, F32s, Isa, MOST, Scalar, U32s};
 use faces::{Faces, Meeting};
 use rayon::prelude::*;
 use std::cmp::Ordering::Equal;
+use std::f32::consts::LN_2;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -34,6 +35,13 @@ const SAME: f32 = 0.04;
 
 /// The same, in ways from the ray's origin: flat faces at a slant to the ray lie farther from prisms' sides.
 const MUCH: f32 = 4.0;
+
+/// A part of a depth between two heights, from where that of the lower one is kept.
+#[inline(always)]
+fn between<I: Isa>(depths: &[f32], at: U32s<I>, along: F32s<I>) -> F32s<I> {
+    let (from, to) = (at.gather(depths), at.plus_splat(PARTS as u32).gather(depths));
+    from + (to - from) * along
+}
 
 /// Edges of triangles, in heights of the tips, up to which what changes over a triangle is the edge of a shadow.
 const NARROW: f32 = 0.2;
@@ -202,17 +210,16 @@ impl<'a> MeanShadow<'a> {
         let mut linear = [F32s::splat(0.0); 2];
         let mut through = [F32s::splat(f32::MIN_POSITIVE); 2];
         for (depths, b) in self.corners(triangle).into_iter().zip(b.to_array()) {
-            let [undercoat, guard, limbs] = std::array::from_fn(|part| {
-                let of = |i: usize| first.plus_splat(i as u32).gather(depths.as_flattened());
-                let (from, to) = (of(part), of(part + PARTS));
-                from + (to - from) * along
-            });
+            let depths = depths.as_flattened();
+            let undercoat = between(depths, first, along);
+            let guard = between(depths, first.plus_splat(1), along);
+            let limbs = between(depths, first.plus_splat(2), along);
             linear = [linear[0] + undercoat * b, linear[1] + guard * b];
             let other = limbs + guard * around;
             through[0] = through[0] + (-(other + undercoat * around)).exp_negative() * b;
             through[1] = through[1] + (-other).exp_negative() * b;
         }
-        let [all, other] = through.map(|through| through.log2() * -std::f32::consts::LN_2);
+        let (all, other) = (-through[0].log2() * LN_2, -through[1].log2() * LN_2);
         let rest = 1.0 - around;
         [linear[0] * rest + (all - other), linear[1] * rest + other]
     }

@@ -28,7 +28,7 @@ pub fn radiance_at<I: Isa>(looks: &Vec3Row, s: F32s<I>) -> Vec3s<I> {
     let low = at.floor().within(0.0, (LOOKS - 2) as f32);
     let part = at - low;
     // From the middle of three looks; at the ends the nearest three.
-    let around = [low.max(F32s::splat(1.0)), (low + 1.0).min(F32s::splat((LOOKS - 2) as f32))].map(F32s::to_whole);
+    let around = [low.max(F32s::splat(1.0)).to_whole(), (low + 1.0).min(F32s::splat((LOOKS - 2) as f32)).to_whole()];
     let places = Places { low: low.to_whole(), part, hollow: (part - part * part) * 0.25, around };
     Vec3s::new(places.of(&looks.x), places.of(&looks.y), places.of(&looks.z))
 }
@@ -50,12 +50,17 @@ impl<I: Isa> Places<I> {
     /// e to the power of the curve through logarithms.
     #[inline(always)]
     fn of(&self, row: &Row) -> F32s<I> {
-        let at = |i: U32s<I>, by: u32| i.plus_splat(by).pick(row);
-        let (from, to) = (at(self.low, 0), at(self.low, 1));
-        let bends = self.around.map(|i| at(i, u32::MAX) - at(i, 0) * 2.0 + at(i, 1));
-        let bend = (bends[0] + bends[1]).within(-2.0 * MOST_BEND, 2.0 * MOST_BEND);
+        let (from, to) = (self.low.pick(row), self.low.plus_splat(1).pick(row));
+        let bend = bend_at(row, self.around[0]) + bend_at(row, self.around[1]);
+        let bend = bend.within(-2.0 * MOST_BEND, 2.0 * MOST_BEND);
         (from + (to - from) * self.part - bend * self.hollow).exp()
     }
+}
+
+/// Second difference at the middle of three numbers of a row.
+#[inline(always)]
+fn bend_at<I: Isa>(row: &Row, middle: U32s<I>) -> F32s<I> {
+    middle.plus_splat(u32::MAX).pick(row) - middle.pick(row) * 2.0 + middle.plus_splat(1).pick(row)
 }
 
 /// A point of a strand on the picture.
