@@ -59,7 +59,10 @@ pub fn simplex_lanes<I: Isa>(p: Vec3s<I>, seed: u32, period: Option<f32>) -> F32
     for (corner, unskew) in [(Vec3s::all(0.0), 0.0), (first, 1.0 / 6.0), (second, 1.0 / 3.0), (Vec3s::all(1.0), 0.5)] {
         let d = (x0 - corner).plus(F32s::splat(unskew));
         let fall = F32s::splat(0.6) - d.dot(d);
-        let corner = period.map_or(cell + corner, |period| wrapped(cell + corner, period));
+        let corner = match period {
+            Some(period) => wrapped(cell + corner, period),
+            None => cell + corner,
+        };
         let term = fall * fall * fall * fall * d.dot(gradient_lanes(corner, seed));
         sum = sum + fall.gt(F32s::splat(0.0)).keep(term);
     }

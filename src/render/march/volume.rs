@@ -301,6 +301,12 @@ struct Fill<'v, 'a> {
     triangle: u32,
 }
 
+/// Values at a triangle's corners, mixed.
+#[inline(always)]
+fn mixed<I: Isa>(corners: [Vec3; 3], b: Vec3s<I>) -> Vec3s<I> {
+    Vec3s::splat(corners[0]) * b.x + Vec3s::splat(corners[1]) * b.y + Vec3s::splat(corners[2]) * b.z
+}
+
 impl lanes::Work for Fill<'_, '_> {
     type Output = Block;
 
@@ -310,9 +316,9 @@ impl lanes::Work for Fill<'_, '_> {
         let shell = &volume.shell;
         let corners = shell.skin.triangles[triangle as usize].map(|v| v as usize);
         // Patterns keep to the rest pose, so that they do not swim under a moving skin.
-        let foot_m = shell.skin.rest_corners_m(triangle as usize).map(Vec3s::<I>::splat);
-        let normals = corners.map(|v| Vec3s::splat(volume.rest_normals[v]));
-        let clump = corners.map(|v| F32s::splat(shell.fields.clump[v]));
+        let foot_m = shell.skin.rest_corners_m(triangle as usize);
+        let normals = corners.map(|v| volume.rest_normals[v]);
+        let clump = corners.map(|v| shell.fields.clump[v]);
         let d = u32::from(volume.subdivisions[triangle as usize]);
         let (layers, per_layer) = (volume.layers() as usize, 1_usize << (2 * d));
         let mut nearby = Nearby::default();
@@ -323,10 +329,10 @@ impl lanes::Work for Fill<'_, '_> {
             for lane in 0..count {
                 b.set(lane, subelement::centre((first + lane) as u32, d));
             }
-            let b = Vec3s::of(&b);
-            let root_m = foot_m[0] * b.x + foot_m[1] * b.y + foot_m[2] * b.z;
-            let normal = (normals[0] * b.x + normals[1] * b.y + normals[2] * b.z).normalized_or(Vec3s::splat(Vec3::Y));
-            let factor = clump[0] * b.x + clump[1] * b.y + clump[2] * b.z;
+            let b = Vec3s::<I>::of(&b);
+            let root_m = mixed(foot_m, b);
+            let normal = mixed(normals, b).normalized_or(Vec3s::splat(Vec3::Y));
+            let factor = b.x * clump[0] + b.y * clump[1] + b.z * clump[2];
             let columns = shell.undercoat.columns(&mut nearby, root_m, normal, factor);
             for layer in 0..layers {
                 let t = F32s::splat((layer as f32 + 0.5) / layers as f32);

@@ -55,10 +55,13 @@ impl Column<'_> {
     /// Optical depths towards the key light.
     #[inline(always)]
     fn depths<I: Isa>(&self, height_m: F32s<I>) -> F32s<I> {
-        let mean = self.mean.map_or(F32s::splat(0.0), |(shadow, share_per_m)| {
-            let [undercoat, other] = shadow.at(self.triangle, self.b, height_m * share_per_m);
-            undercoat + other
-        });
+        let mean = match self.mean {
+            Some((shadow, share_per_m)) => {
+                let [undercoat, other] = shadow.at(self.triangle, self.b, height_m * share_per_m);
+                undercoat + other
+            }
+            None => F32s::splat(0.0),
+        };
         let Some((volume, t_per_m, lattices)) = &self.clumped else { return mean };
         let t = height_m * *t_per_m;
         let inside = !t.gt(F32s::splat(1.0));
@@ -145,7 +148,10 @@ impl<'a> GuardShader<'a> {
                 normal,
                 lean: Vec3s::splat(lean),
                 above: self.above.at_lanes(height_m * share_of_top) * factor,
-                key_depth: column.as_ref().map_or(F32s::splat(0.0), |column| column.depths(height_m)),
+                key_depth: match &column {
+                    Some(column) => column.depths(height_m),
+                    None => F32s::splat(0.0),
+                },
             };
             let Vec3s { x, y, z } = self.radiance(&spot);
             let log_radiance = Vec3s::new(log(x), log(y), log(z)).rows();
