@@ -20,6 +20,7 @@ const SETTINGS: Settings = Settings {
         coarsest_details: f32::INFINITY,
         pattern: None,
     },
+    shadow_span: 0.1,
     hair_px: 0.0,
     opaque: 1e-3,
     band_bytes: 256 << 20,

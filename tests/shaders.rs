@@ -165,7 +165,9 @@ fn structs_of_kernels_lie_as_in_rust() {
                 density_at,
                 shadow_at,
                 rest_area,
-                traits
+                traits,
+                mean_splits,
+                mean_at
             }),
         ),
         (

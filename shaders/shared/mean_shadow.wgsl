@@ -2,10 +2,11 @@
 #define_import_path furrier::mean_shadow
 
 #import furrier::scene::{scene, triangles, tables, TABLE, LINEAR}
+#import furrier::prism::around_corners
 
 // Intervals of height up to the tips.
 const LAYERS: u32 = 24u;
-// Tables before the depths of the first vertex.
+// Tables before the depths of the first column.
 const BEFORE: u32 = 3u;
 
 // Height of the tallest hair where the length field is 1, m; 0 where none grows.
@@ -14,28 +15,32 @@ fn tips_m() -> f32 {
 }
 
 // Parts of a depth: undercoat, guard hair, and hair of other limbs.
-fn of_level(corner: u32, level: u32) -> vec3<f32> {
-    let first = 3u * (corner * (LAYERS + 1u) + level) + BEFORE * (TABLE + 1u);
+fn of_level(column: u32, level: u32) -> vec3<f32> {
+    let first = 3u * (column * (LAYERS + 1u) + level) + BEFORE * (TABLE + 1u);
     return vec3(tables[first], tables[first + 1u], tables[first + 2u]);
 }
 
-fn of_column(corner: u32, at: f32) -> vec3<f32> {
+// Number `which` of a triangle's lattice.
+fn of_column(triangle: u32, which: u32, at: f32) -> vec3<f32> {
+    let column = u32(tables[triangles[triangle].mean_at + which]);
     let low = min(u32(at), LAYERS - 1u);
-    return mix(of_level(corner, low), of_level(corner, low + 1u), at - f32(low));
+    return mix(of_level(column, low), of_level(column, low + 1u), at - f32(low));
 }
 
 // Optical depths of the undercoat that a march meets and of all other hair towards the key light, at a height given as a share of
-// the tips'. What hair lets through is linear from vertex to vertex; but of the hair around depth is, where a trait says so.
+// the tips'. What hair lets through is linear from column to column; but of the hair around depth is, where a trait says so.
 fn mean_depths(triangle: u32, b: vec3<f32>, share: f32) -> vec2<f32> {
     let at = clamp(share, 0.0, 1.0) * f32(LAYERS);
-    let corners = triangles[triangle].corners;
+    let lattice = around_corners(b, triangles[triangle].mean_splits);
+    let corners = lattice.corners;
+    let weights = lattice.weights;
     let around = select(1.0, 0.0, (triangles[triangle].traits & LINEAR) != 0u);
     // By part, of the three corners.
-    let parts = transpose(mat3x3(of_column(corners.x, at), of_column(corners.y, at), of_column(corners.z, at)));
+    let parts = transpose(mat3x3(of_column(triangle, corners.x, at), of_column(triangle, corners.y, at), of_column(triangle, corners.z, at)));
     let other = parts[2] + parts[1] * around;
-    let all_through = dot(exp(-(other + parts[0] * around)), b);
-    let other_through = dot(exp(-other), b);
+    let all_through = dot(exp(-(other + parts[0] * around)), weights);
+    let other_through = dot(exp(-other), weights);
     let depths = -log(max(vec2(all_through, other_through), vec2(1.1754944e-38)));
-    let linear = vec2(dot(parts[0], b), dot(parts[1], b)) * (1.0 - around);
+    let linear = vec2(dot(parts[0], weights), dot(parts[1], weights)) * (1.0 - around);
     return linear + vec2(depths.x - depths.y, depths.y);
 }

@@ -103,6 +103,32 @@ fn corner_index(i: u32, j: u32, d: u32) -> u32 {
     return j * (2u * (1u << d) + 3u - j) / 2u + i;
 }
 
+// Corners of the sub-element around a point of a level, and their weights.
+struct Around {
+    corners: vec3<u32>,
+    weights: vec3<f32>,
+}
+
+fn around_corners(b: vec3<f32>, d: u32) -> Around {
+    let n = f32(1u << d);
+    let uv = clamp(b.yz * n, vec2(0.0), vec2(n));
+    let j = min(floor(uv.y), n - 1.0);
+    let i = min(floor(uv.x), n - 1.0 - j);
+    let f = uv - vec2(i, j);
+    let rest = 1.0 - f.x - f.y;
+    // The sub-element that points the other way; none beyond the edge opposite to corner 0, where rounding may lead.
+    let turned = rest < 0.0 && i + j < n - 1.0;
+    let at_i = u32(i);
+    let at_j = u32(j);
+    let shift = select(0u, 1u, turned);
+    let corners = vec3(
+        corner_index(at_i + shift, at_j + shift, d),
+        corner_index(at_i + 1u, at_j, d),
+        corner_index(at_i, at_j + 1u, d),
+    );
+    return Around(corners, select(vec3(rest, f), vec3(-rest, 1.0 - f.yx), turned));
+}
+
 // Barycentric coordinates of a corner.
 fn corner_place(index: u32, d: u32) -> vec3<f32> {
     let n = 1u << d;

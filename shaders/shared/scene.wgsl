@@ -91,7 +91,7 @@ struct Scene {
     lobes: array<Lobe, 3>,
 }
 
-// Traits of triangles: reaches an open edge; depths of the mean shadow of the hair around go linearly over it.
+// Traits of triangles: reaches an open edge; depths of the mean shadow of the hair around go linearly from column to column.
 const AT_BORDER: u32 = 1u;
 const LINEAR: u32 = 2u;
 
@@ -110,6 +110,9 @@ struct Triangle {
     rest_area: f32,
     // AT_BORDER, LINEAR.
     traits: u32,
+    // Subdivisions of the mean shadow, and where in the tables the numbers of its columns begin.
+    mean_splits: u32,
+    mean_at: u32,
 }
 
 struct Vertex {
@@ -144,7 +147,7 @@ struct Strand {
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var<storage, read> triangles: array<Triangle>;
 @group(0) @binding(2) var<storage, read> vertices: array<Vertex>;
-// Share of hairs that reach a height; hair area above it, of both kinds; by vertex, what shared/mean_shadow.wgsl reads.
+// Share of hairs that reach a height; hair area above it, of both kinds; what shared/mean_shadow.wgsl reads.
 @group(0) @binding(3) var<storage, read> tables: array<f32>;
 // The first is the key.
 @group(0) @binding(4) var<storage, read> lights: array<Light>;

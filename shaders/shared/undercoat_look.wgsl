@@ -2,7 +2,7 @@
 #define_import_path furrier::undercoat_look
 
 #import furrier::scene::{scene, triangles, lights, tint_at, normal_at, density_at, length_at, table_at}
-#import furrier::prism::{barycentric, corners_of, corner_index}
+#import furrier::prism::{barycentric, corners_of, around_corners}
 #import furrier::undercoat::decode_value
 #import furrier::march::Step
 #import furrier::fur_light::{angles_of, cos_of, kajiya_kay, shadow_power, slant_depth, sky_depth, terminator}
@@ -18,29 +18,13 @@ fn shadow_byte(byte: u32) -> f32 {
 // between levels as a flat coat's is.
 fn key_depth(triangle: u32, b: vec3<f32>, t: f32) -> f32 {
     let d = triangles[triangle].shadow_splits;
-    let n = f32(1u << d);
-    let uv = clamp(b.yz * n, vec2(0.0), vec2(n));
-    let j = min(floor(uv.y), n - 1.0);
-    let i = min(floor(uv.x), n - 1.0 - j);
-    let f = uv - vec2(i, j);
-    let rest = 1.0 - f.x - f.y;
-    // The sub-element that points the other way; none beyond the edge opposite to corner 0, where rounding may lead.
-    let turned = rest < 0.0 && i + j < n - 1.0;
-    let at_i = u32(i);
-    let at_j = u32(j);
-    let shift = select(0u, 1u, turned);
-    let corners = vec3(
-        corner_index(at_i + shift, at_j + shift, d),
-        corner_index(at_i + 1u, at_j, d),
-        corner_index(at_i, at_j + 1u, d),
-    );
-    let weights = select(vec3(rest, f), vec3(-rest, 1.0 - f.yx), turned);
+    let around = around_corners(b, d);
     let at = clamp(table_at(2u, t), 0.0, f32(scene.layers));
     let low = min(u32(at), scene.layers - 1u);
-    let below = triangles[triangle].shadow_at * (scene.layers + 1u) + low * corners_of(d) + corners;
+    let below = triangles[triangle].shadow_at * (scene.layers + 1u) + low * corners_of(d) + around.corners;
     let above = below + corners_of(d);
-    let from_depth = dot(weights, vec3(shadow_byte(below.x), shadow_byte(below.y), shadow_byte(below.z)));
-    let to_depth = dot(weights, vec3(shadow_byte(above.x), shadow_byte(above.y), shadow_byte(above.z)));
+    let from_depth = dot(around.weights, vec3(shadow_byte(below.x), shadow_byte(below.y), shadow_byte(below.z)));
+    let to_depth = dot(around.weights, vec3(shadow_byte(above.x), shadow_byte(above.y), shadow_byte(above.z)));
     return max(from_depth + (at - f32(low)) * (to_depth - from_depth), 0.0);
 }
 

@@ -1,19 +1,22 @@
-//! The key light's shadow in hair as dense as it is in the mean: optical depth from every vertex of the skin, at heights up
-//! to the tips, through the shell to its top or an open border, and through what other limbs' hair lies beyond
+//! The key light's shadow in hair as dense as it is in the mean: optical depth in columns over the skin, at heights up to the
+//! tips, through the shell to its top or an open border, and through what other limbs' hair lies beyond
 //! (`docs/steps/shade.md`).
 
+mod columns;
 mod faces;
+mod kind;
 mod walk;
 
 use super::march::volume::OTHER_NS;
 use super::pelt::Pelt;
 use super::shell::Shell;
 use super::shell::prism::Place;
-use crate::fur::groom::fibre::{Fibre, LENGTH_SPREAD};
 use crate::fur::undercoat::Undercoat;
 use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, MOST, Scalar, U32s};
+use columns::Columns;
 use faces::{Faces, Meeting};
+use kind::Kind;
 use rayon::prelude::*;
 use std::cmp::Ordering::Equal;
 use std::f32::consts::LN_2;
@@ -43,16 +46,12 @@ fn between<I: Isa>(depths: &[f32], at: U32s<I>, along: F32s<I>) -> F32s<I> {
     from + (to - from) * along
 }
 
-/// Edges of triangles, in heights of the tips, up to which what changes over a triangle is the edge of a shadow.
+/// Distance between columns, in heights of the tips, up to which what changes from one to the next is the edge of a shadow.
 const NARROW: f32 = 0.2;
 
-fn goes_linearly(shell: &Shell<'_>, triangle: usize, tips_m: f32) -> bool {
-    shell.neighbours.at_border(triangle as u32) || shell.skin.mean_edge_m(triangle) > NARROW * tips_m
-}
-
-/// A ray to the light from a place above a vertex.
-struct Column {
-    /// Through the hair around the vertex.
+/// A ray to the light from a height of a column.
+struct Sight {
+    /// Through the hair around the column.
     own: Option<Ray>,
     /// Height of the tips, m.
     tips_m: f32,
@@ -62,7 +61,7 @@ struct Column {
     meetings: Vec<Meeting>,
 }
 
-/// Hair that a ray passes besides what is around its vertex, by where the ray leaves it.
+/// Hair that a ray passes besides what is around its column, by where the ray leaves it.
 struct Other {
     /// Number of the height at which the ray begins.
     height: usize,
@@ -89,54 +88,7 @@ fn straightened(depths: &Depths) -> Depths {
     moved
 }
 
-/// Values at heights up to the tips.
-type Table = [f32; LAYERS * 4 + 1];
-
-/// A kind of hair in the mean.
-#[derive(Clone, Debug)]
-struct Kind {
-    /// Slopes and their spread.
-    slopes: Undercoat,
-    /// Hair width × length along the hair per skin area and height, 1/m, at heights up to the tips.
-    width_per_m: Table,
-    /// The same, summed from the skin up to there in intervals.
-    width_below_per_m: Table,
-}
-
-impl Kind {
-    fn new(fibre: &Fibre, shell_m: f32, tips: f32) -> Self {
-        let slopes = Undercoat::new(fibre, None);
-        let variation = fibre.shape.length_variation;
-        let mean = slopes.height_m / shell_m / (1.0 + LENGTH_SPREAD * variation);
-        let width = |t: f32| {
-            // Over lengths: normal, those beyond two deviations set there.
-            const STEPS: usize = 32;
-            let step = 2.0 * LENGTH_SPREAD / STEPS as f32;
-            let of = |z: f32| {
-                let s = t / (mean * (1.0 + z * variation));
-                if s > 1.0 {
-                    return 0.0;
-                }
-                2.0 * fibre.radius_m * fibre.profile.radius_factor(s) * fibre.profile.opacity_at(s)
-            };
-            let beyond = 0.5 * libm::erfcf(LENGTH_SPREAD * std::f32::consts::FRAC_1_SQRT_2);
-            (0..STEPS).fold(beyond * (of(-LENGTH_SPREAD) + of(LENGTH_SPREAD)), |sum, i| {
-                let z = -LENGTH_SPREAD + (i as f32 + 0.5) * step;
-                sum + 0.398_942_3 * libm::expf(-0.5 * z * z) * step * of(z)
-            })
-        };
-        let last = (LAYERS * 4) as f32;
-        let width_per_m: Table =
-            std::array::from_fn(|i| fibre.density_per_m2 * slopes.stretch * width(tips * i as f32 / last));
-        let mut width_below_per_m = [0.0; LAYERS * 4 + 1];
-        for i in 1..width_per_m.len() {
-            width_below_per_m[i] = width_below_per_m[i - 1] + 0.5 * (width_per_m[i - 1] + width_per_m[i]);
-        }
-        Self { slopes, width_per_m, width_below_per_m }
-    }
-}
-
-/// Shadows by vertex, filled when first needed; each depends on nothing but its vertex.
+/// Shadows by column, filled when first needed; each depends on nothing but where it stands.
 #[derive(Debug)]
 pub struct MeanShadow<'a> {
     shell: Shell<'a>,
@@ -147,18 +99,20 @@ pub struct MeanShadow<'a> {
     faces: Faces,
     /// Twice the area of each triangle in the rest pose, m².
     twice_area_m2: Vec<f32>,
-    /// Whether depths of the hair around go linearly over each triangle.
+    columns: Columns,
+    /// Whether depths of the hair around go linearly from column to column, by triangle.
     linear: Vec<bool>,
     /// Triangles around each vertex's position class.
     around: Vec<Vec<u32>>,
-    cells: Vec<OnceLock<Depths>>,
+    cells: Vec<OnceLock<Box<Depths>>>,
     /// Time spent filling, summed over threads, ns.
     spent_ns: AtomicU64,
 }
 
 impl<'a> MeanShadow<'a> {
-    /// Of a pelt; none where nothing grows.
-    pub fn new(pelt: &Pelt<'a>, to_light: Vec3) -> Option<Self> {
+    /// Of a pelt, in columns over its vertices and, where those are farther apart than `span` heights of the tips, between
+    /// them; none where nothing grows.
+    pub fn new(pelt: &Pelt<'a>, to_light: Vec3, span: f32) -> Option<Self> {
         let guard = pelt.guard.map(|(_, fibre)| fibre);
         let of_shell = Undercoat::new(pelt.undercoat.or(guard)?, None);
         let shell_m = of_shell.height_m;
@@ -173,15 +127,22 @@ impl<'a> MeanShadow<'a> {
             }
         }
         let shell = Shell::new(pelt.skin, pelt.fields, of_shell);
+        let tips_m = shell_m * tips;
+        let columns = Columns::new(&shell, span * tips_m);
+        let goes_linearly = |t: u32| {
+            let apart_m = shell.skin.mean_edge_m(t as usize) / (1_u32 << columns.lattice(t).1) as f32;
+            shell.neighbours.at_border(t) || apart_m > NARROW * tips_m
+        };
         Some(Self {
             faces: Faces::new(&shell, tips, to_light),
-            linear: (0..pelt.skin.triangles.len()).map(|t| goes_linearly(&shell, t, shell_m * tips)).collect(),
+            linear: (0..pelt.skin.triangles.len() as u32).map(goes_linearly).collect(),
             shell,
             tips,
             kinds: [pelt.undercoat, guard].map(|fibre| fibre.map(|fibre| Kind::new(fibre, shell_m, tips))),
             to_light,
             twice_area_m2: (0..pelt.skin.triangles.len()).map(|t| 2.0 * pelt.skin.rest_area_m2(t)).collect(),
-            cells: std::iter::repeat_with(OnceLock::new).take(around.len()).collect(),
+            cells: std::iter::repeat_with(OnceLock::new).take(columns.count()).collect(),
+            columns,
             around,
             spent_ns: AtomicU64::new(0),
         })
@@ -194,13 +155,14 @@ impl<'a> MeanShadow<'a> {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.shell.bytes() + self.faces.bytes() + self.cells.len() * size_of::<OnceLock<Depths>>()
+        let filled = self.cells.iter().filter(|cell| cell.get().is_some()).count() * size_of::<Depths>();
+        self.shell.bytes() + self.faces.bytes() + self.columns.bytes() + size_of_val(&self.cells[..]) + filled
     }
 
     /// Optical depths in the column over a point of the skin, at heights given as shares of the tips': of the undercoat that a march
-    /// meets, and of all other hair. What hair lets through is linear from vertex to vertex, as the edges of shadows lie anywhere
-    /// between; but of the hair around depth is, where it grows with the distance from an open border or over triangles wide for
-    /// their hair ([`Self::is_linear`]).
+    /// meets, and of all other hair. What hair lets through is linear from column to column, as the edges of shadows lie anywhere
+    /// between; but of the hair around depth is, where it grows with the distance from an open border or where columns stand far
+    /// apart for their hair ([`Self::is_linear`]).
     #[inline(always)]
     pub fn at<I: Isa>(&self, triangle: u32, b: Vec3, share: F32s<I>) -> [F32s<I>; 2] {
         let at = share.within(0.0, 1.0) * LAYERS as f32;
@@ -209,8 +171,9 @@ impl<'a> MeanShadow<'a> {
         let around = if self.linear[triangle as usize] { 0.0 } else { 1.0 };
         let mut linear = [F32s::splat(0.0); 2];
         let mut through = [F32s::splat(f32::MIN_POSITIVE); 2];
-        for (depths, b) in self.corners(triangle).into_iter().zip(b.to_array()) {
-            let depths = depths.as_flattened();
+        let (columns, weights) = self.columns.around(triangle, b);
+        for (column, b) in columns.into_iter().zip(weights.to_array()) {
+            let depths = self.cell(column).as_flattened();
             let undercoat = between(depths, first, along);
             let guard = between(depths, first.plus_splat(1), along);
             let limbs = between(depths, first.plus_splat(2), along);
@@ -224,20 +187,30 @@ impl<'a> MeanShadow<'a> {
         [linear[0] * rest + (all - other), linear[1] * rest + other]
     }
 
-    /// Whether over a triangle the depth of the hair around it goes linearly, rather than what that lets through.
+    /// Whether in a triangle the depth of the hair around goes linearly from column to column, rather than what that lets
+    /// through.
     pub fn is_linear(&self, triangle: u32) -> bool {
         self.linear[triangle as usize]
     }
 
-    fn corners(&self, triangle: u32) -> [&Depths; 3] {
-        let skin = self.shell.skin;
-        skin.triangles[triangle as usize].map(|v| self.cell(skin.position_class[v as usize]))
+    /// How often a triangle is split, and where the columns over its lattice's corners begin in [`Self::numbers`].
+    pub fn lattice(&self, triangle: u32) -> (u32, u32) {
+        self.columns.lattice(triangle)
     }
 
-    /// Depths by vertex, height and part, for the devices that look them up themselves.
-    pub fn of_vertices(&self) -> Vec<f32> {
-        let classes = &self.shell.skin.position_class;
-        classes.par_iter().flat_map_iter(|&class| self.cell(class).as_flattened().iter().copied()).collect()
+    /// Numbers of columns by triangle and corner of its lattice ([`super::shell::lattice::places`]).
+    pub fn numbers(&self) -> &[u32] {
+        self.columns.numbers()
+    }
+
+    /// Depths by column, height and part, for the devices that look them up themselves.
+    pub fn of_columns(&self) -> Vec<f32> {
+        let columns = 0..self.columns.count() as u32;
+        const NOTHING: Depths = [[0.0; PARTS]; LAYERS + 1];
+        // Of vertices at one place, only one has a column.
+        let is_used = |column: u32| self.around.get(column as usize).is_none_or(|around| !around.is_empty());
+        let depths = |column: u32| if is_used(column) { self.cell(column) } else { &NOTHING };
+        columns.into_par_iter().flat_map_iter(|column| depths(column).as_flattened().iter().copied()).collect()
     }
 
     /// Optical depth of all hair, as [`Self::at`].
@@ -257,14 +230,14 @@ impl<'a> MeanShadow<'a> {
         height_m / (self.shell.undercoat.height_m * self.tips * length.max(1e-3))
     }
 
-    fn cell(&self, class: u32) -> &Depths {
-        let cell = &self.cells[class as usize];
+    fn cell(&self, column: u32) -> &Depths {
+        let cell = &self.cells[column as usize];
         if let Some(depths) = cell.get() {
             return depths;
         }
         cell.get_or_init(|| {
             let start = Instant::now();
-            let depths = self.fill(class);
+            let depths = Box::new(self.fill(column));
             let ns = start.elapsed().as_nanos() as u64;
             self.spent_ns.fetch_add(ns, Ordering::Relaxed);
             OTHER_NS.set(OTHER_NS.get() + ns);
@@ -272,7 +245,7 @@ impl<'a> MeanShadow<'a> {
         })
     }
 
-    fn fill(&self, class: u32) -> Depths {
+    fn fill(&self, column: u32) -> Depths {
         let mut depths = Depths::default();
         let mut others = Vec::new();
         let (mut own, mut end) = ([0.0; 2], LAYERS + 1);
@@ -283,16 +256,16 @@ impl<'a> MeanShadow<'a> {
                 break;
             }
             let begin = end.saturating_sub(MOST);
-            let columns: Vec<Column> = (begin..end).map(|i| self.column(class, i)).collect();
+            let sights: Vec<Sight> = (begin..end).map(|i| self.sight(column, i)).collect();
             let mut rays = Rays::default();
-            rays.iter_mut().zip(&columns).for_each(|(ray, column)| *ray = column.own);
+            rays.iter_mut().zip(&sights).for_each(|(ray, sight)| *ray = sight.own);
             let found = lanes::run(Walk { mean: self, rays: &rays });
-            for ((i, column), found) in (begin..end).zip(columns).zip(found).rev() {
+            for ((i, sight), found) in (begin..end).zip(sights).zip(found).rev() {
                 if own[0] + own[1] < DARK {
                     own = found.depths;
                 }
                 depths[i] = [own[0], own[1], 0.0];
-                let Column { own: ray, tips_m, far_m, mut meetings } = column;
+                let Sight { own: ray, tips_m, far_m, mut meetings } = sight;
                 // Where it leaves hair that it has been followed through.
                 let end_m = found.end_m.filter(|_| ray.is_some_and(|ray| ray.onwards)).unwrap_or(f32::NAN);
                 let off = |meeting: &Meeting| (meeting.at_m - end_m).abs();
@@ -308,10 +281,18 @@ impl<'a> MeanShadow<'a> {
         straightened(&depths)
     }
 
-    /// The ray to the light from height number `i` above a vertex.
-    fn column(&self, class: u32, i: usize) -> Column {
+    /// The ray to the light from height number `i` of a column.
+    fn sight(&self, column: u32, i: usize) -> Sight {
         let t = self.tips * i as f32 / LAYERS as f32;
-        let (foot_m, offset_m) = (self.shell.skin.positions_m[class as usize], self.shell.offsets_m[class as usize]);
+        let between = self.columns.between(column);
+        let (foot_m, offset_m) = match between {
+            Some((triangle, b)) => {
+                let prism = self.shell.prism(triangle);
+                let mix = |[p, q, r]: [Vec3; 3]| p * b.x + q * b.y + r * b.z;
+                (mix(prism.foot_m), mix(prism.offset_m))
+            }
+            None => (self.shell.skin.positions_m[column as usize], self.shell.offsets_m[column as usize]),
+        };
         let tips_m = self.tips * offset_m.length();
         let mut meetings = Vec::new();
         let near_m = NEAR * tips_m;
@@ -321,7 +302,11 @@ impl<'a> MeanShadow<'a> {
         meetings
             .sort_by(|a, b| a.at_m.total_cmp(&b.at_m).then_with(|| order(a).partial_cmp(&order(b)).unwrap_or(Equal)));
         meetings.dedup_by(|next, kept| next.at_m - kept.at_m < near_m);
-        Column { own: self.start(class, t, far_m), tips_m, far_m, meetings }
+        let own = match between {
+            Some((triangle, b)) => Some(self.ray(triangle, Place { b: [b.y, b.z], t }, far_m)),
+            None => self.start(column, t, far_m),
+        };
+        Sight { own, tips_m, far_m, meetings }
     }
 
     /// Adds the hair that rays from some heights have passed where they leave it, followed back from there.
@@ -339,6 +324,12 @@ impl<'a> MeanShadow<'a> {
                 depths[other.height][2] += found.depths.iter().sum::<f32>();
             }
         }
+    }
+
+    /// From a place in the prism over a triangle.
+    fn ray(&self, triangle: u32, place: Place, far_m: f32) -> Ray {
+        let jacobian = self.shell.prism(triangle).jacobian(&place);
+        Ray { triangle, place, origin_m: jacobian.at_m, far_m, onwards: jacobian.determinant > 0.0 }
     }
 
     /// Where a ray begins above a vertex: in the prism around it into which the light's direction leads.
@@ -359,8 +350,7 @@ impl<'a> MeanShadow<'a> {
             let leads =
                 |&(most, ref ray): &(f32, Ray)| least > most || least == most && order(triangle) < order(ray.triangle);
             if best.as_ref().is_none_or(leads) {
-                let onwards = jacobian.determinant > 0.0;
-                best = Some((least, Ray { triangle, place, origin_m: jacobian.at_m, far_m, onwards }));
+                best = Some((least, self.ray(triangle, place, far_m)));
             }
         }
         // Where no prism lies that way, the light comes over an open border.

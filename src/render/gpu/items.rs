@@ -8,7 +8,7 @@ use bytemuck::{Pod, Zeroable};
 /// No triangle, no item: `NOTHING` of `shared/scene.wgsl`.
 pub const NOTHING: u32 = u32::MAX;
 
-/// Traits of triangles: reaches an open edge; depths of the mean shadow of the hair around go linearly over it.
+/// Traits of triangles: reaches an open edge; depths of the mean shadow of the hair around go linearly from column to column.
 pub const AT_BORDER: u32 = 1;
 /// As above.
 pub const LINEAR: u32 = 2;
@@ -33,6 +33,11 @@ pub struct TriangleItem {
     pub rest_area: f32,
     /// [`AT_BORDER`], [`LINEAR`].
     pub traits: u32,
+    /// Subdivisions of the mean shadow, and where in the tables the numbers of its columns begin.
+    pub mean_splits: u32,
+    /// As above.
+    pub mean_at: u32,
+    pub(super) _pad: [u32; 2],
 }
 
 /// `Vertex` of `shared/scene.wgsl`.

@@ -54,7 +54,7 @@ pub fn draw(
     let normals = pelt.skin.smooth_normals();
     let subdivisions = subdivisions(pelt, &view, settings);
     let volume = Volume::new(pelt, &normals, lighting.key.to_light, settings.resolution, subdivisions);
-    let mean = MeanShadow::new(pelt, lighting.key.to_light);
+    let mean = MeanShadow::new(pelt, lighting.key.to_light, settings.shadow_span);
     let (volume, mean) = (volume.as_ref(), mean.as_ref());
     let most_bytes = budget_bytes / 2;
     let scene = GpuScene::new(gpu, &kernels, pelt, lighting, settings, &normals, volume, mean, &view, most_bytes)?;

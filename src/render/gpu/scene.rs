@@ -15,6 +15,7 @@ use crate::render::shell::{lattice, outer};
 use crate::render::strands::LOOKS;
 use crate::render::table::Table;
 use crate::render::view::View;
+use bytemuck::Zeroable;
 
 /// Everything that stays the same from band to band.
 pub(super) struct GpuScene {
@@ -136,7 +137,16 @@ impl GpuScene {
             uniform.clump_strength = undercoat.clump_strength;
         }
         let mut tables = volume.map_or(vec![0.0; TABLES * Table::VALUES], |v| v.tables().concat());
-        tables.extend(mean.map_or(Vec::new(), MeanShadow::of_vertices));
+        if let Some(mean) = mean {
+            tables.extend(mean.of_columns());
+            let numbers_at = tables.len() as u32;
+            // Whole up to 2²⁴, past which no buffer would hold the columns themselves.
+            tables.extend(mean.numbers().iter().map(|&number| number as f32));
+            for (t, item) in (0..).zip(&mut triangles) {
+                let (first, splits) = mean.lattice(t);
+                (item.mean_at, item.mean_splits) = (numbers_at + first, splits);
+            }
+        }
         let offsets_m = volume.map_or(&[][..], |v| &v.shell().offsets_m);
         let vertices = VertexItem::of(pelt, normals, offsets_m);
         let (strands, points): (_, &[Vec3]) = match pelt.guard {
@@ -218,6 +228,7 @@ fn triangle(pelt: &Pelt<'_>, volume: Option<&Volume<'_>>, mean: Option<&MeanShad
         shadow_at: NOTHING,
         rest_area: pelt.skin.rest_area_m2(t as usize),
         traits: u32::from(at_border) * AT_BORDER + u32::from(linear) * LINEAR,
+        ..TriangleItem::zeroed()
     }
 }
 

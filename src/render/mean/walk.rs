@@ -1,6 +1,7 @@
-//! Rays towards the key light through hair in the mean, some heights of one vertex side by side.
+//! Rays towards the key light through hair in the mean, some heights of one column side by side.
 
-use super::{DARK, Kind, LAYERS, MeanShadow, Table};
+use super::kind::{Kind, Table};
+use super::{DARK, LAYERS, MeanShadow};
 use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, MOST, Mask, Row, Vec3Row, Vec3s};
 use crate::render::march::prisms::{Places, Prisms};

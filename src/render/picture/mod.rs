@@ -37,6 +37,9 @@ pub struct Settings {
     pub stepping: Stepping,
     /// How finely undercoat is stored.
     pub resolution: Resolution,
+    /// How far apart columns of the shadow in the mean stand at most, in heights of the tips; infinite for those over the skin's
+    /// vertices alone.
+    pub shadow_span: f32,
     /// Width, px, that guard hairs have at least at their roots: where single ones are thinner, fewer are drawn, each wider; 0 draws
     /// every hair as it is.
     pub hair_px: f32,
@@ -56,6 +59,7 @@ impl Default for Settings {
             blending: Blending::Virtual { fragments: 8 },
             stepping: Stepping::default(),
             resolution: Resolution::default(),
+            shadow_span: 0.1,
             hair_px: 0.0,
             opaque: 1e-3,
             band_bytes: 256 << 20,
@@ -73,6 +77,7 @@ impl Settings {
             opaque: 0.0125,
             stepping: Stepping { depth: 0.5, layers: 2.0 },
             resolution: Resolution { subelement_px: 3.0, ..Resolution::default() },
+            shadow_span: f32::INFINITY,
             ..Self::default()
         }
     }
@@ -166,7 +171,7 @@ pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Se
     let to_light = lighting.key.to_light;
     let (volume, mean) = rayon::join(
         || Volume::new(pelt, &normals, to_light, settings.resolution, subdivisions),
-        || MeanShadow::new(pelt, to_light),
+        || MeanShadow::new(pelt, to_light, settings.shadow_span),
     );
     row(&mut picture, "shell", start, volume.as_ref().map_or(0, |v| v.shell().bytes()));
     let thinning = settings.thinning(&view);

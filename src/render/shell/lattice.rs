@@ -5,7 +5,7 @@
 
 use super::block::{code, value};
 use crate::math::Vec3;
-use crate::math::lanes::{F32s, Isa, MOST, Row, U32s, Vec3s};
+use crate::math::lanes::{F32s, Isa, MOST, Row, Scalar, U32s, Vec3s};
 
 /// Values at the corners of sub-elements by corner and level, i·levels + i_l, so that two levels are read at once.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -29,6 +29,13 @@ pub fn places(d: u32) -> impl Iterator<Item = Vec3> {
     let n = 1_u32 << d;
     let at = move |i: u32, j: u32| Vec3::new((n - i - j) as f32, i as f32, j as f32) / n as f32;
     (0..=n).flat_map(move |j| (0..=n - j).map(move |i| at(i, j)))
+}
+
+/// Corners of the sub-element around a point in a level split `d` times, and their weights.
+pub fn around(d: u32, b: Vec3) -> ([u32; 3], Vec3) {
+    let n = (1_u32 << d) as f32;
+    let (corners, weights) = corners_around(F32s::<Scalar>::splat(n), Vec3s::splat(b));
+    (corners.map(|corner| corner.row()[0]), weights.rows().lane(0))
 }
 
 impl Lattice {
@@ -78,18 +85,7 @@ impl<'a> Lattices<'a> {
     /// no prism.
     #[inline(always)]
     pub fn at<I: Isa>(&self, b: Vec3s<I>, level: F32s<I>) -> F32s<I> {
-        let (zero, one) = (F32s::splat(0.0), F32s::splat(1.0));
-        let n = F32s::of(&self.n);
-        let (u, v) = ((b.y * n).max(zero).min(n), (b.z * n).max(zero).min(n));
-        let j = v.floor().min(n - 1.0);
-        let i = u.floor().min(n - 1.0 - j);
-        let (fu, fv) = (u - i, v - j);
-        // The sub-element that points the other way; none beyond the edge opposite to corner 0, where rounding may lead.
-        let turned = (fu + fv).gt(one) & (n - 1.0).gt(i + j);
-        let shift = turned.keep(one);
-        let corners = [corner(n, i + shift, j + shift), corner(n, i + 1.0, j), corner(n, i, j + 1.0)];
-        let rest = one - fu - fv;
-        let weights = Vec3s::new(turned.select(-rest, rest), turned.select(one - fv, fu), turned.select(one - fu, fv));
+        let (corners, weights) = corners_around(F32s::of(&self.n), b);
         let at = level.within(0.0, self.last_level);
         let low = at.floor().min(F32s::splat(self.last_level - 1.0));
         let levels = U32s::splat(self.last_level as u32 + 1);
@@ -99,7 +95,7 @@ impl<'a> Lattices<'a> {
             from = from + value(two.and(0xFF)) * weight;
             to = to + value(two.shr::<8>()) * weight;
         }
-        (from + (at - low) * (to - from)).max(zero)
+        (from + (at - low) * (to - from)).max(F32s::splat(0.0))
     }
 
     /// A byte and, above it, the next one.
@@ -114,6 +110,23 @@ impl<'a> Lattices<'a> {
             }
         })
     }
+}
+
+/// Corners of the sub-elements around points in levels split into `n` rows, and their weights.
+#[inline(always)]
+fn corners_around<I: Isa>(n: F32s<I>, b: Vec3s<I>) -> ([U32s<I>; 3], Vec3s<I>) {
+    let (zero, one) = (F32s::splat(0.0), F32s::splat(1.0));
+    let (u, v) = ((b.y * n).max(zero).min(n), (b.z * n).max(zero).min(n));
+    let j = v.floor().min(n - 1.0);
+    let i = u.floor().min(n - 1.0 - j);
+    let (fu, fv) = (u - i, v - j);
+    // The sub-element that points the other way; none beyond the edge opposite to corner 0, where rounding may lead.
+    let turned = (fu + fv).gt(one) & (n - 1.0).gt(i + j);
+    let shift = turned.keep(one);
+    let corners = [corner(n, i + shift, j + shift), corner(n, i + 1.0, j), corner(n, i, j + 1.0)];
+    let rest = one - fu - fv;
+    let weights = Vec3s::new(turned.select(-rest, rest), turned.select(one - fv, fu), turned.select(one - fu, fv));
+    (corners, weights)
 }
 
 /// Index of the corner `i` steps towards corner 1 and `j` towards corner 2 in a level split into rows of `n`.
