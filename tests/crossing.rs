@@ -59,3 +59,24 @@ fn hair_that_does_not_cross_is_left_alone() {
     unfold(&mesh, &normals, HEIGHT_M, &mut lean, &mut length);
     assert!(lean == normals && length.iter().all(|&l| l == 1.0));
 }
+
+#[test]
+fn rays_over_a_border_start_on_the_prisms_curved_side() {
+    // Hair turns aside along the edge from corner 1 to corner 2, as on the rim of a brim.
+    let prism = Prism {
+        foot_m: [Vec3::ZERO, Vec3::new(0.005, 0.0, -0.002), Vec3::new(0.005, 0.0, 0.003)],
+        offset_m: [Vec3::Y, Vec3::new(0.1, 0.9, 0.4), Vec3::new(-0.2, 0.8, 0.5)].map(|o| o * HEIGHT_M),
+    };
+    let middle = Place { b: [0.5, 0.5], t: 0.5 };
+    // Half-way from the foot of one corner to the tip of the other: on both flat halves of the wall.
+    let flat_m = (prism.foot_m[1] + prism.foot_m[2] + prism.offset_m[2]) * 0.5;
+    let off = prism.locate(flat_m, middle).unwrap().barycentric()[0];
+    assert!(off.abs() > 0.05, "the wall is flat: {off}");
+    for direction in [Vec3::NEG_X, Vec3::new(-1.0, -0.5, 0.2), Vec3::new(0.6, 0.1, 0.3)].map(Vec3::normalize) {
+        let on_m = prism.to_side_m(0, flat_m, direction, middle);
+        let off = prism.locate(flat_m + direction * on_m, middle).unwrap().barycentric()[0];
+        assert!(off.abs() < 1e-4, "along {direction}: {off}");
+    }
+    // A ray that only grazes the side goes no farther than there is hair.
+    assert!(prism.to_side_m(0, flat_m, Vec3::Z, middle).abs() < HEIGHT_M);
+}

@@ -1,7 +1,7 @@
 // Where pixels' rays enter the shell, by its tops and at open borders its walls: one workgroup per face, first to count,
 // then to fill the pixels' lists.
-#import furrier::camera::{view, totals, OVERFLOW, camera_from_world, ray_through, pixel_at, faces_eye, meet, window_of, skin_z, spans, cursors}
-#import furrier::faces::{face_corner, face_shape}
+#import furrier::camera::{view, totals, OVERFLOW, camera_from_world, ray_through, direction_through, pixel_at, faces_eye, meet, window_of, skin_z, spans, cursors}
+#import furrier::faces::{face_corner, face_shape, start_m}
 #import furrier::scene::scene
 
 override FILL: bool = false;
@@ -32,7 +32,8 @@ fn entrances(
     let count = width * (window.w - window.y);
     for (var i = local; i < count; i += 64u) {
         let pixel = window.xy + vec2(i % width, i / width);
-        let ray = ray_through(vec2<f32>(pixel) + 0.5);
+        let middle = vec2<f32>(pixel) + 0.5;
+        let ray = ray_through(middle);
         let meeting = meet(shape, ray);
         let at = pixel_at(pixel);
         if !meeting.met || meeting.z_m >= skin_z(at) {
@@ -41,7 +42,9 @@ fn entrances(
         let slot = atomicAdd(&cursors[at], 1u);
         if FILL {
             if slot < spans[at].end {
-                starts[slot] = vec2(bitcast<u32>(meeting.z_m * length(ray)), face);
+                let direction = normalize(direction_through(middle));
+                let at_m = start_m(face, meeting.barycentric, meeting.z_m * length(ray), view.eye_m, direction);
+                starts[slot] = vec2(bitcast<u32>(at_m), face);
             } else {
                 atomicMax(&totals[OVERFLOW], 1u);
             }

@@ -3,7 +3,7 @@
 #import furrier::prism::{Place, barycentric}
 #import furrier::camera::{view, totals, OVERFLOW, STEPS, STRETCHES, pixel_count, pixel_of, direction_through, ray_through, meet, skin_z, spans, cursors,
     opaque_m, heads, NO_SKIN}
-#import furrier::faces::{faces, face_place, face_shape}
+#import furrier::faces::{faces, place_on, face_shape}
 #import furrier::march::{advance, walk_from, Stepping, MOST_STEPS}
 #import furrier::stretch::{Stretch, pack_faces}
 #import furrier::undercoat_look::undercoat_look
@@ -54,11 +54,7 @@ fn place_of(entry: Entry, begin: u32, count: u32, ray: vec3<f32>) -> Place {
         return Place(around.b, around.t);
     }
     let face = starts[begin + entry.index].y;
-    let m = meet(face_shape(face), ray).barycentric;
-    let a = face_place(face, 0u);
-    let b = face_place(face, 1u);
-    let c = face_place(face, 2u);
-    return Place(a.b * m.x + b.b * m.y + c.b * m.z, a.t * m.x + b.t * m.y + c.t * m.z);
+    return place_on(face, meet(face_shape(face), ray).barycentric);
 }
 
 // Steps of a march on their way to become one stretch.

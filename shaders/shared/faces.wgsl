@@ -2,7 +2,7 @@
 #define_import_path furrier::faces
 
 #import furrier::scene::prism_of
-#import furrier::prism::{Place, jacobian}
+#import furrier::prism::{Place, jacobian, to_side_m}
 #import furrier::camera::{Flat, flat_of, camera_from_world}
 
 // Triangle · 16 + kind · 2 + whether the prism is inside out there. Kind: 0 for the top, 1 + 2·corner for one half of the wall
@@ -44,4 +44,24 @@ fn face_shape(face: u32) -> Flat {
         camera_from_world(face_corner(face, 1u)),
         camera_from_world(face_corner(face, 2u)),
     );
+}
+
+// Where in its prism a point of a face lies.
+fn place_on(face: u32, barycentric: vec3<f32>) -> Place {
+    let a = face_place(face, 0u);
+    let b = face_place(face, 1u);
+    let c = face_place(face, 2u);
+    return Place(mat3x2(a.b, b.b, c.b) * barycentric, dot(vec3(a.t, b.t, c.t), barycentric));
+}
+
+// How far from the eye a march starts whose ray meets a face `at_m` from it: on the side of the prism that a wall's flat halves
+// stand for.
+fn start_m(face: u32, barycentric: vec3<f32>, at_m: f32, eye_m: vec3<f32>, direction: vec3<f32>) -> f32 {
+    let kind = (faces[face] >> 1u) & 7u;
+    if kind == 0u {
+        return at_m;
+    }
+    let prism = prism_of(faces[face] >> 4u);
+    let place = place_on(face, barycentric);
+    return max(at_m + to_side_m(prism, (kind - 1u) / 2u, eye_m + direction * at_m, direction, place), 0.0);
 }

@@ -64,6 +64,24 @@ fn rates_along(j: Jacobian, along: vec3<f32>) -> vec3<f32> {
     return vec3(dot(j.gradient_b, along), dot(j.gradient_c, along), dot(j.gradient_t, along));
 }
 
+// How far along a unit direction from a point, whose place is about `guess`, the side opposite to `corner` lies, m; nothing where
+// it is farther than half as far as the prism is high.
+fn to_side_m(prism: Prism, corner: u32, point_m: vec3<f32>, direction: vec3<f32>, guess: Place) -> f32 {
+    var place = guess;
+    var along_m = 0.0;
+    var up_m = 0.0;
+    for (var i = 0u; i < 3u; i++) {
+        let j = jacobian(prism, place);
+        place = moved(place, rates_along(j, point_m + direction * along_m - j.at_m), 1.0);
+        let rates = rates_along(j, direction);
+        let by_m = -barycentric(place)[corner] / vec3(-rates.x - rates.y, rates.xy)[corner];
+        place = moved(place, rates, by_m);
+        along_m += by_m;
+        up_m = length(j.up_m);
+    }
+    return select(0.0, along_m, abs(along_m) < 0.5 * up_m);
+}
+
 // Sub-element of a layer split d times that holds b (Andersen et al. 2016, eq. (1) and (2)).
 fn subelement(b: vec3<f32>, d: u32) -> u32 {
     let n = f32(1u << d);

@@ -67,12 +67,13 @@ struct Way {
 type Change = fn(&mut Settings, f64);
 
 /// Every control of the renderer and the values it is tried at.
-const CONTROLS: [(&str, &[f64], Change); 10] = [
+const CONTROLS: [(&str, &[f64], Change); 11] = [
     ("optical depth of a step", &[0.05, 0.1, 0.5, 1.0, 2.0], |s, v| s.stepping.depth = v as f32),
     ("length of a step, layers", &[0.125, 0.25, 0.5, 1.0, 4.0, 8.0], |s, v| s.stepping.layers = v as f32),
     ("most subdivisions d", &[0.0, 2.0, 4.0, 5.0, 6.0, 8.0], |s, v| s.resolution.most_subdivisions = v as u32),
     ("edge of a sub-element, px", &[0.75, 3.0, 6.0, 12.0], |s, v| s.resolution.subelement_px = v as f32),
     ("largest sub-element, details", &[1.0, 2.0, 4.0], |s, v| s.resolution.coarsest_details = v as f32),
+    ("columns of the mean shadow, heights apart", &[0.05, 0.1, 0.2, 10.0], |s, v| s.shadow_span = v as f32),
     ("layers", &[4.0, 8.0, 32.0, 64.0], |s, v| s.resolution.layers = v as u32),
     ("virtual fragments", &[1.0, 4.0, 8.0, 16.0, 30.0], |s, v| s.blending = Blending::Virtual { fragments: v as u32 }),
     ("simplified blending, a per m", &[0.0, 100.0, 1000.0, 10000.0], |s, v| {
@@ -154,6 +155,7 @@ fn finest(size: [usize; 2]) -> Settings {
         blending: Blending::Virtual { fragments: 64 },
         stepping: Stepping { depth: 0.04, layers: 0.125 },
         resolution: Resolution { layers: 64, subelement_px: 0.5, most_subdivisions: 8, ..Resolution::default() },
+        shadow_span: 0.05,
         ..Settings { size, ..Settings::default() }
     }
 }

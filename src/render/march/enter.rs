@@ -59,13 +59,20 @@ impl Entrances {
         self.around_eye.iter().map(|&(triangle, place)| Start { at_m: 0.0, triangle, place })
     }
 
-    /// The start of a march where a ray meets face `face` at `barycentric`, `at_m` from the eye.
-    pub fn start(&self, face: usize, barycentric: Vec3, at_m: f32) -> Start {
+    /// The start of a march where a ray from the eye meets face `face` at `barycentric`, `at_m` from the eye.
+    ///
+    /// A wall's two flat halves only have its edges in common with the side of the prism, which is curved wherever hair turns
+    /// aside along a border: marches start on the side itself.
+    pub fn start(&self, shell: &Shell<'_>, face: usize, barycentric: Vec3, at_m: f32, ray_m: [Vec3; 2]) -> Start {
         let outer::Face { triangle, corners, .. } = self.faces[face].outer;
         let mean = |value: fn(&Place) -> f32| {
             value(&corners[0]) * barycentric.x + value(&corners[1]) * barycentric.y + value(&corners[2]) * barycentric.z
         };
-        Start { at_m, triangle, place: Place { b: [mean(|p| p.b[0]), mean(|p| p.b[1])], t: mean(|p| p.t) } }
+        let place = Place { b: [mean(|p| p.b[0]), mean(|p| p.b[1])], t: mean(|p| p.t) };
+        let Some(corner) = self.faces[face].outer.opposite() else { return Start { at_m, triangle, place } };
+        let [eye_m, direction] = ray_m;
+        let on_m = shell.prism(triangle).to_side_m(corner, eye_m + direction * at_m, direction, place);
+        Start { at_m: (at_m + on_m).max(0.0), triangle, place }
     }
 
     /// Bytes held.

@@ -140,7 +140,10 @@ impl Pass<'_> {
                         && flat.faces_eye()
                         && meeting.z_m < place.skin.z_m[at]
                     {
-                        starts[at].push(entrances.start(face, meeting.barycentric, meeting.z_m * ray.length()));
+                        let direction = self.view.direction(Vec2::new(x as f32 + 0.5, y as f32 + 0.5)).normalize();
+                        let ray_m = [self.view.eye_m, direction];
+                        let at_m = meeting.z_m * ray.length();
+                        starts[at].push(entrances.start(volume.shell(), face, meeting.barycentric, at_m, ray_m));
                     }
                 }
             }

@@ -18,6 +18,11 @@ pub struct Face {
 }
 
 impl Face {
+    /// The corner opposite to the wall; none of tops.
+    pub fn opposite(&self) -> Option<usize> {
+        self.kind.checked_sub(1).map(|wall| wall as usize / 2)
+    }
+
     /// Corners, counter-clockwise for who enters there where the prism is not inside out.
     pub fn unturned(&self) -> [Place; 3] {
         let [a, b, c] = self.corners;

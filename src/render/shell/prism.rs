@@ -81,6 +81,22 @@ impl Prism {
         None
     }
 
+    /// How far along a unit direction from a point, whose place is about `guess`, the side opposite to `corner` lies, m; nothing
+    /// where it is farther than half as far as the prism is high.
+    pub fn to_side_m(&self, corner: usize, point_m: Vec3, direction: Vec3, guess: Place) -> f32 {
+        let (mut place, mut along_m, mut up_m) = (guess, 0.0, 0.0);
+        for _ in 0..3 {
+            let j = self.jacobian(&place);
+            place = place.moved(j.rates(point_m + direction * along_m - j.at_m), 1.0);
+            let rates = j.rates(direction);
+            let by_m = -place.barycentric()[corner] / [-rates.x - rates.y, rates.x, rates.y][corner];
+            place = place.moved(rates, by_m);
+            along_m += by_m;
+            up_m = j.up_m.length();
+        }
+        if along_m.abs() < 0.5 * up_m { along_m } else { 0.0 }
+    }
+
     /// Lowest and highest corner, m.
     pub fn bounds_m(&self) -> (Vec3, Vec3) {
         let mut bounds = (Vec3::INFINITY, Vec3::NEG_INFINITY);
