@@ -268,6 +268,7 @@ impl<'a> Pass<'a> {
                 !columns.is_empty() && !rows.is_empty()
             })
             .collect();
+        shader.prepare(&visible);
         const CHUNK: usize = 512;
         let points = strands.points_per_strand;
         let size = visible.len() * points;

@@ -11,6 +11,7 @@ use crate::render::shell::lattice::Lattices;
 use crate::render::table::Table;
 use crate::shade::lobes::Lobes;
 use crate::shade::{Angles, shadow_power};
+use rayon::prelude::*;
 
 /// Shades guard hair. Holds what does not change from hair to hair.
 pub struct GuardShader<'a> {
@@ -98,6 +99,24 @@ impl<'a> GuardShader<'a> {
         };
         let sites = (0..LOOKS).map(site).collect();
         Ok(Self { pelt, strands, lighting, lobes, normals, mean, volume, eye_m, albedo_share, top_m, above, sites })
+    }
+
+    /// Fills the stored shadow that strands beside open borders are lit by, prism by prism: strands of one prism, asking for it
+    /// side by side, would wait for each other.
+    pub fn prepare(&self, strands: &[u32]) {
+        let Some(volume) = self.volume else { return };
+        let lit = |triangle: u32| {
+            let corners = self.pelt.skin.triangles[triangle as usize].map(|v| self.normals[v as usize]);
+            corners.iter().any(|&normal| terminator(self.lighting.key.to_light, normal) > 0.0)
+        };
+        let at_border = |&triangle: &u32| volume.shell().neighbours.at_border(triangle) && lit(triangle);
+        let roots = strands.par_iter().map(|&strand| self.strands.roots[strand as usize].triangle);
+        let mut triangles: Vec<u32> = roots.filter(at_border).collect();
+        triangles.sort_unstable();
+        triangles.dedup();
+        triangles.par_iter().with_max_len(1).for_each(|&triangle| {
+            volume.shadows.lattice(volume, self.mean, triangle);
+        });
     }
 
     /// The looks of some strands, root first, into `out`, a row for each.
