@@ -12,14 +12,15 @@
 #[allow(dead_code, reason = "tests use the rest")]
 mod pelts;
 
+use furrier::cast::bvh::Bvh;
 use furrier::fur::undercoat::Undercoat;
+use furrier::hybrid::{Settings, draw};
 use furrier::math::Vec3;
-use furrier::render::bvh::Bvh;
-use furrier::render::march::volume::{Resolution, Volume};
-use furrier::render::march::{Journey, Start, Stepping};
-use furrier::render::picture::{Settings, draw};
-use furrier::render::shell::prism::{Place, Prism};
-use furrier::render::shell::subelement;
+use furrier::volume::march::content::{Content, Resolution};
+use furrier::volume::march::volume::Volume;
+use furrier::volume::march::{Journey, Start, Stepping};
+use furrier::volume::shell::prism::{Place, Prism};
+use furrier::volume::shell::subelement;
 use pelts::Grown;
 
 fn main() {
@@ -51,9 +52,12 @@ fn volume(d: u8) -> Volume<'static> {
     static NORMALS: std::sync::OnceLock<Vec<Vec3>> = std::sync::OnceLock::new();
     let grown = pelt();
     let normals = NORMALS.get_or_init(|| grown.mesh.smooth_normals());
-    let resolution = Resolution { layers: LAYERS, pattern: None, ..Resolution::default() };
-    let subdivisions = vec![d; grown.mesh.triangles.len()];
-    Volume::new(&grown.pelt(), normals, Vec3::Y, resolution, subdivisions).expect("a pelt has undercoat")
+    static CONTENT: std::sync::OnceLock<Content<'static>> = std::sync::OnceLock::new();
+    let content = CONTENT.get_or_init(|| {
+        let resolution = Resolution { layers: LAYERS, pattern: None, ..Resolution::default() };
+        Content::new(&grown.pelt(), normals, resolution).expect("a scene has undercoat")
+    });
+    Volume::new(content, vec![d; grown.mesh.triangles.len()])
 }
 
 /// Rays that enter the shell through its top.
@@ -106,7 +110,7 @@ impl Rays {
             far_m: f32::INFINITY,
         };
         let journeys: Vec<Journey> = self.rays.iter().map(journey).collect();
-        self.volume.depths_along(&journeys, &Stepping::default(), 0.0, f32::INFINITY)
+        self.volume.depths_along(&journeys, &Stepping::default(), 0.0, f32::INFINITY).0
     }
 }
 

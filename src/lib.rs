@@ -4,19 +4,23 @@
 
 pub mod asset;
 pub mod bake;
+pub mod cast;
 pub mod cli;
 pub mod coat;
 pub mod data;
 pub mod error;
 pub mod fur;
 pub mod gpu;
+pub mod hybrid;
 pub mod math;
 pub mod metrics;
 pub mod preset;
-pub mod render;
+pub mod reference;
 pub mod report;
 pub mod runtime;
 pub mod shade;
+pub mod stage;
 pub mod viewer;
+pub mod volume;
 
 pub use error::{Error, Result};

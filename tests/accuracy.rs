@@ -1,15 +1,16 @@
 //! The stack against the same strands, ray cast.
 
 use furrier::coat::fins::FinParameters;
+use furrier::coat::hair::{TileHair, leaning};
 use furrier::coat::judge::{Effort, Row, coverage_table};
 use furrier::coat::shells::ShellParameters;
-use furrier::coat::tile::{TileHair, TileRecipe, bake, leaning};
+use furrier::coat::tile::{TileRecipe, bake};
 use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::groom::{Colour, Guard, Shape, Undercoat};
 use furrier::fur::grow;
 use furrier::math::{Mat3, Vec2, Vec3};
-use furrier::render::medium::Medium;
 use furrier::runtime::cpu::{Stack, View};
+use furrier::volume::medium::Medium;
 
 const EFFORT: Effort = Effort { pixels: 128, supersampling: 2 };
 

@@ -12,17 +12,21 @@ const FLOORS: &[(&str, u32)] = &[
     ("gpu", 2),
     ("metrics", 2),
     ("shade", 2),
+    ("stage", 2),
     ("fur", 3),
-    ("render", 4),
-    ("runtime", 4),
-    ("coat", 5),
-    ("preset", 6),
-    ("bake", 7),
-    ("batch", 8),
-    ("report", 8),
-    ("viewer", 8),
-    ("cli", 9),
-    ("main", 10),
+    ("volume", 4),
+    ("cast", 5),
+    ("hybrid", 5),
+    ("reference", 5),
+    ("runtime", 5),
+    ("coat", 6),
+    ("preset", 7),
+    ("bake", 8),
+    ("batch", 9),
+    ("report", 9),
+    ("viewer", 9),
+    ("cli", 10),
+    ("main", 11),
 ];
 
 /// `error` serves every floor, the ground floor included.
@@ -63,53 +67,86 @@ fn unit_of(path: &str) -> &str {
     path.split('/').next().unwrap_or(path).trim_end_matches(".rs")
 }
 
-/// What `text` imports from the crate: line number and the first segment of each path. Comments and strings are no
-/// imports; `use crate::{a, b::c}` counts each branch; `super` beyond the file's own folder counts as `crate`.
+/// What `text` imports from the crate: line number and the first segment of each path. Names that start with a capital are
+/// the crate's own public face.
 fn imports(path: &str, text: &str) -> Vec<(usize, String)> {
+    let mut found: Vec<(usize, String)> =
+        absolute(path, text).into_iter().map(|(line, mut segments)| (line, segments.swap_remove(0))).collect();
+    found.retain(|(_, head)| head.starts_with(|c: char| c.is_lowercase()));
+    found.sort();
+    found.dedup();
+    found
+}
+
+/// The paths that `text` imports from the crate, from its root on, by segments.
+pub fn paths(path: &str, text: &str) -> Vec<Vec<String>> {
+    absolute(path, text).into_iter().map(|(_, segments)| segments).collect()
+}
+
+/// Line number and segments from the crate's root on of each path into the crate. Comments and strings are no imports;
+/// `use crate::{a, b::c}` counts each branch; `super` leads up from the file's own module.
+fn absolute(path: &str, text: &str) -> Vec<(usize, Vec<String>)> {
     let code = without_comments_and_strings(text);
-    let depth = module_depth(path);
-    let up = "super::".repeat(depth);
+    let own: Vec<&str> = path.split('/').take(module_depth(path)).map(|s| s.trim_end_matches(".rs")).collect();
     let mut found = Vec::new();
-    for prefix in ["crate::", "furrier::", up.as_str()].into_iter().filter(|p| !p.is_empty()) {
-        for (at, _) in code.match_indices(prefix) {
-            let before = code[..at].chars().next_back();
-            let climbs_on = prefix == up && code[at + prefix.len()..].starts_with("super::");
-            if before.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == ':') || climbs_on {
+    for root in ["crate::", "furrier::", "super::"] {
+        for (at, _) in code.match_indices(root) {
+            if code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':') {
                 continue;
             }
             let line = 1 + code[..at].matches('\n').count();
-            found.extend(heads(&code[at + prefix.len()..]).into_iter().map(|head| (line, head)));
+            let mut rest = &code[at + root.len()..];
+            let mut up = usize::from(root == "super::");
+            while let Some(further) = rest.strip_prefix("super::") {
+                (rest, up) = (further, up + 1);
+            }
+            let above = if root == "super::" { own.len().saturating_sub(up) } else { 0 };
+            for branch in branches(rest) {
+                let segments: Vec<String> = own[..above].iter().map(|s| (*s).to_owned()).chain(branch).collect();
+                if !segments.is_empty() {
+                    found.push((line, segments));
+                }
+            }
         }
     }
-    found.retain(|(_, head)| head.starts_with(|c: char| c.is_lowercase()) && head != "super" && head != "self");
     found
 }
 
 /// How many `super::` lead from a module to the crate's root.
 fn module_depth(path: &str) -> usize {
     let segments = path.split('/').count();
-    if path.ends_with("/mod.rs") { segments - 1 } else { segments }
+    if path.ends_with("/mod.rs") || matches!(path, "lib.rs" | "main.rs") { segments - 1 } else { segments }
 }
 
-/// First segments of a use tree: one for `a::b`, several for `{a, b::{c, d}}`.
-fn heads(tree: &str) -> Vec<String> {
-    let ident = |s: &str| s.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
-    let Some(inner) = tree.strip_prefix('{') else { return vec![ident(tree)] };
-    let (mut level, mut fresh, mut found) = (0, true, Vec::new());
-    for (at, c) in inner.char_indices() {
-        match c {
-            '{' => level += 1,
-            '}' if level == 0 => break,
-            '}' => level -= 1,
-            ',' if level == 0 => fresh = true,
-            c if fresh && (c.is_alphabetic() || c == '_') => {
-                found.push(ident(&inner[at..]));
-                fresh = false;
+/// The paths of a use tree: one for `a::b`, several for `{a, b::{c, d}}`.
+fn branches(tree: &str) -> Vec<Vec<String>> {
+    let tree = tree.trim_start();
+    if let Some(inner) = tree.strip_prefix('{') {
+        let (mut level, mut begin, mut found) = (0, 0, Vec::new());
+        for (at, c) in inner.char_indices() {
+            match c {
+                '{' => level += 1,
+                ',' | '}' if level == 0 => {
+                    found.extend(branches(&inner[begin..at]).into_iter().filter(|branch| !branch.is_empty()));
+                    begin = at + 1;
+                    if c == '}' {
+                        break;
+                    }
+                }
+                '}' => level -= 1,
+                _ => {}
             }
-            _ => {}
         }
+        return found;
     }
-    found
+    let name: String = tree.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+    let rest = &tree[name.len()..];
+    let further = match rest.strip_prefix("::") {
+        Some(rest) if !name.is_empty() => branches(rest),
+        _ => vec![Vec::new()],
+    };
+    let own = Some(name).filter(|name| !name.is_empty() && name != "self");
+    further.into_iter().map(|branch| own.iter().cloned().chain(branch).collect()).collect()
 }
 
 /// `text` with comments and string literals blanked, line breaks kept.
@@ -152,7 +189,7 @@ fn string_end(text: &str) -> usize {
 }
 
 /// Every Rust file below `folder`, with its path relative to it.
-fn sources(folder: &Path) -> Vec<(String, String)> {
+pub fn sources(folder: &Path) -> Vec<(String, String)> {
     let mut found = Vec::new();
     let mut open = vec![folder.to_owned()];
     while let Some(dir) = open.pop() {

@@ -4,7 +4,7 @@ use crate::pelts;
 use furrier::data::mesh::Mesh;
 use furrier::fur::groom::unfold::unfold;
 use furrier::math::Vec3;
-use furrier::render::shell::prism::{Place, Prism};
+use furrier::volume::shell::prism::{Place, Prism};
 
 const HEIGHT_M: f32 = 0.012;
 

@@ -3,8 +3,8 @@
 use crate::pelts;
 use furrier::data::film::Film;
 use furrier::math::Vec3;
-use furrier::render::defocus::{Lens, defocus, middle_depth_m};
-use furrier::render::view::View;
+use furrier::stage::defocus::{Lens, defocus, middle_depth_m};
+use furrier::stage::projection::View;
 
 pub const SIZE: [usize; 2] = [121, 81];
 

@@ -2,17 +2,17 @@
 
 use crate::pelts::{self, Grown};
 use furrier::gpu::{Binding, Choice, Gpu, Library, Source};
+use furrier::hybrid::Settings;
+use furrier::hybrid::gpu::kernels::SHARED;
+use furrier::hybrid::gpu::layout::SceneUniform;
 use furrier::math::hash::{Stream, combine, unit_f32};
 use furrier::math::noise::simplex;
 use furrier::math::{Vec2, Vec3, Vec4};
-use furrier::render::gpu::kernels::SHARED;
-use furrier::render::gpu::layout::SceneUniform;
-use furrier::render::pelt::{Layer, sky_depth, slant_depth, terminator};
-use furrier::render::picture::Settings;
-use furrier::render::shell::subelement;
 use furrier::shade::Angles;
 use furrier::shade::kajiya_kay::KajiyaKay;
 use furrier::shade::lobes::Lobes;
+use furrier::volume::pelt::{Layer, sky_depth, slant_depth, terminator};
+use furrier::volume::shell::subelement;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
@@ -77,7 +77,9 @@ fn on_sphere(u: Vec2) -> Vec3 {
 
 fn on_gpu(grown: &Grown, inputs: &[Vec4]) -> Vec<Vec4> {
     let gpu = Gpu::open(&Choice::Auto).unwrap();
-    let scene = SceneUniform::new(&grown.pelt(), &pelts::studio(), &Settings::default()).unwrap();
+    let pelt = grown.pelt();
+    let lobes = Lobes::new(&pelt.hair.guard).unwrap();
+    let scene = SceneUniform::new(&pelt, &lobes, &pelts::studio(), &Settings::default());
     let scene_layout = gpu.layout("scene", &[Binding::Uniform]);
     let own_layout = gpu.layout("formulas", &[Binding::Read, Binding::Write]);
     let module = gpu.shader_of(&mut Library::new(&SHARED).unwrap(), MAIN).unwrap();

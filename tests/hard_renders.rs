@@ -6,11 +6,11 @@ use furrier::data::film::Film;
 use furrier::data::mesh::Mesh;
 use furrier::data::strands::{Root, Strands};
 use furrier::fur::groom::{Guard, Shape, Undercoat};
+use furrier::hybrid::{Settings, draw};
 use furrier::math::hash::Stream;
 use furrier::math::{DVec3, Vec3};
 use furrier::metrics::compare::{Light, compare};
-use furrier::render::pelt::Pelt;
-use furrier::render::picture::{Settings, draw};
+use furrier::volume::pelt::Pelt;
 
 const SIZE: [usize; 2] = [64, 64];
 

@@ -1,14 +1,15 @@
 //! Tests of the tests: every comparison must catch a planted fault.
 
 use crate::architecture::breaches;
+use crate::circles::circles;
 use crate::docs::first_difference;
 use crate::laws::shading::furnace;
 use crate::metrics::{changed, picture};
 use crate::pelt_twins::share_alike;
 use furrier::data::image::Image8;
+use furrier::data::ray::DepthRange;
 use furrier::math::Vec3;
 use furrier::metrics::compare::compare;
-use furrier::render::DepthRange;
 use furrier::shade::kajiya_kay::KajiyaKay;
 
 fn breaches_of(path: &str, text: &str) -> Vec<String> {
@@ -35,10 +36,26 @@ fn the_floors_allow_what_they_should() {
         ("asset/mod.rs", "use crate::data::mesh::Mesh;\nuse crate::asset::gltf;\nuse super::asset::obj;"),
         ("math/mod.rs", "use crate::error::Error;\nuse crate::Result;"),
         ("main.rs", "fn main() { furrier::cli::run(); }"),
-        ("coat/shells/mod.rs", "use super::fins;\nuse crate::{data::coat::Coat, render};"),
+        ("coat/shells/mod.rs", "use super::fins;\nuse crate::{data::coat::Coat, cast};"),
     ] {
         assert_eq!(breaches_of(path, text), Vec::<String>::new());
     }
+}
+
+#[test]
+fn circles_inside_folders_are_seen() {
+    let files = |texts: [(&str, &str); 4]| circles(&texts.map(|(path, text)| (path.to_owned(), text.to_owned())));
+    let door = ("fur/mod.rs", "mod a;\nmod b;\nuse a::f;\npub struct Hair;");
+    let open = [
+        door,
+        ("fur/a.rs", "use super::Hair;"),
+        ("fur/b.rs", "use super::{Hair, a::f};"),
+        ("fur/c/mod.rs", "use crate::fur::b::g;"),
+    ];
+    assert_eq!(files(open), Vec::<String>::new());
+    let [door, _, b, c] = open;
+    assert_eq!(files([door, ("fur/a.rs", "use super::b;"), b, c]), ["fur/: a -> b -> a"]);
+    assert_eq!(files([door, ("fur/a.rs", "use super::c::{d, e};"), b, c]), ["fur/: a -> c -> b -> a"]);
 }
 
 #[test]
@@ -65,7 +82,7 @@ fn coverage_tells_hairs_that_are_a_tenth_too_wide() {
 
 #[test]
 fn areas_tell_a_ribbon_from_one_a_tenth_wider() {
-    use furrier::render::strands::Knot;
+    use furrier::hybrid::strands::Knot;
     let knot = |x: f32, half_px: f32| Knot { x, y: 3.0 * x, z_m: 1.0, half_px };
     let wider = crate::ribbons::covered(&knot(0.2, 0.055), &knot(6.2, 0.055));
     let area = 2.0 * 0.05 * 6.0_f64.hypot(18.0);

@@ -3,16 +3,16 @@
 use crate::pelts::{self, Grown};
 use furrier::data::camera::Camera;
 use furrier::data::film::{Film, Layers};
+use furrier::hybrid::resolve::Blending;
+use furrier::hybrid::{Settings, draw};
 use furrier::math::Vec3;
-use furrier::render::picture::{Settings, draw};
-use furrier::render::resolve::Blending;
 
 const SETTINGS: Settings = Settings {
     size: [96, 96],
     halvings: 0,
     blending: Blending::Virtual { fragments: 8 },
-    stepping: furrier::render::march::Stepping { depth: 0.25, layers: 2.0 },
-    resolution: furrier::render::march::volume::Resolution {
+    stepping: furrier::volume::march::Stepping { depth: 0.25, layers: 2.0 },
+    resolution: furrier::volume::march::content::Resolution {
         layers: 16,
         subelement_px: 1.5,
         most_subdivisions: 7,
@@ -107,7 +107,7 @@ fn shorter_steps_agree_with_longer_ones() {
     let mut pelt = grown.pelt();
     pelt.guard = None;
     let mean = |depth: f32, layers: f32| {
-        let stepping = furrier::render::march::Stepping { depth, layers };
+        let stepping = furrier::volume::march::Stepping { depth, layers };
         let settings = Settings { stepping, ..SETTINGS };
         draw(&pelt, &pelts::studio(), &camera, &settings).unwrap().film.coverage()
     };

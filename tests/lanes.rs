@@ -8,7 +8,7 @@ use furrier::math::Vec3;
 use furrier::math::hash::Stream;
 use furrier::math::lanes::{self, F32s, Isa, Row, Scalar, U32s, Vec3Row, Vec3s, Work};
 use furrier::math::noise::{simplex, simplex_lanes};
-use furrier::render::shell::block::{Block, codes};
+use furrier::volume::shell::block::{Block, codes};
 
 /// A function of lanes over many numbers.
 struct Over<'a, F> {

@@ -3,17 +3,17 @@
 use crate::pelts::{self, Grown};
 use crate::undercoat::{Cylinders, depth_of_volume, directions, on_level_skin};
 use furrier::data::film::Film;
+use furrier::hybrid::{self, draw};
 use furrier::math::hash::Stream;
 use furrier::math::{DVec3, Vec3};
 use furrier::metrics::compare::{Difference, Light, compare};
-use furrier::render::pelt::Lighting;
-use furrier::render::picture::{self, draw};
-use furrier::render::reference::bvh::Ray;
-use furrier::render::reference::cone;
-use furrier::render::reference::medium::{Counted, Medium};
-use furrier::render::reference::shell::Place;
-use furrier::render::reference::sight::Sight;
-use furrier::render::reference::{self, Settings};
+use furrier::reference::bvh::Ray;
+use furrier::reference::cone;
+use furrier::reference::medium::{Counted, Medium};
+use furrier::reference::point::ShellPoint;
+use furrier::reference::sight::Sight;
+use furrier::reference::{self, Settings};
+use furrier::volume::pelt::Lighting;
 
 /// Optical depth of the reference's medium along a ray from above through hair of one length on level skin.
 fn depth_of_reference(hairs: &Cylinders, direction: DVec3) -> f64 {
@@ -67,7 +67,7 @@ fn by_reference(size: [usize; 2], grown: &Grown, lighting: &Lighting, lines: usi
 pub fn against_reference(lighting: &Lighting) -> Difference {
     let grown = thin();
     let film = by_reference(SIZE, &grown, &pelts::studio(), 2, 1);
-    let drawn = draw(&grown.pelt(), lighting, &pelts::camera(0.35), &picture::Settings::best(SIZE)).unwrap().film;
+    let drawn = draw(&grown.pelt(), lighting, &pelts::camera(0.35), &hybrid::Settings::best(SIZE)).unwrap().film;
     let difference = compare(&Light::from(&film), &Light::from(&drawn)).unwrap();
     println!("{difference:?}");
     difference
@@ -151,7 +151,7 @@ pub fn places_missed(beside: f64) -> usize {
         let triangle = (unit() * pelt.skin.triangles.len() as f64) as u32;
         let (u, v) = (unit(), unit());
         let b = if u + v < 1.0 { DVec3::new(u, v, 1.0 - u - v) } else { DVec3::new(1.0 - u, 1.0 - v, u + v - 1.0) };
-        let place = Place { triangle, b, t: unit() };
+        let place = ShellPoint { triangle, b, t: unit() };
         let direction = DVec3::new(unit() - 0.5, unit() - 0.5, unit() - 0.5).normalize();
         let away = direction.any_orthonormal_vector() * (beside * height_m);
         let at_m = height_m * (1.0 + unit());

@@ -5,19 +5,19 @@ use furrier::bake::picture::{self as depicted, Only, Scene, studio};
 use furrier::data::camera::Camera;
 use furrier::data::film::Film;
 use furrier::data::image::Image8;
+use furrier::data::light::Directional;
 use furrier::fur::groom::Clump;
 use furrier::gpu::{Choice, Gpu};
+use furrier::hybrid::device::{Device, Drawn, with_fallback};
+use furrier::hybrid::gpu;
+use furrier::hybrid::resolve::Blending;
+use furrier::hybrid::{Settings, draw, prepare};
 use furrier::math::Vec3;
 use furrier::metrics::compare::{Light, compare};
 use furrier::preset::Preset;
-use furrier::render::develop::{Development, develop};
-use furrier::render::device::{Device, Drawn, with_fallback};
-use furrier::render::gpu;
-use furrier::render::march::volume::Resolution;
-use furrier::render::pelt::{Lighting, Pelt};
-use furrier::render::picture::{Settings, draw};
-use furrier::render::resolve::Blending;
-use furrier::shade::light::Directional;
+use furrier::stage::tone::{Development, develop};
+use furrier::volume::march::content::Resolution;
+use furrier::volume::pelt::{Lighting, Pelt};
 use std::cell::Cell;
 
 /// The share of pixels of which no channel differs by more than 1/255.
@@ -33,7 +33,8 @@ fn developed(film: &Film) -> Image8 {
 
 fn on_gpu(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Film {
     let gpu = Gpu::open(&Choice::Auto).unwrap();
-    gpu::draw(&gpu, pelt, lighting, camera, settings, settings.band_bytes).unwrap().film
+    let prepared = prepare(pelt, lighting, settings).unwrap();
+    gpu::prepare(&gpu, &prepared).unwrap().draw(camera, settings.band_bytes).unwrap().film
 }
 
 /// Holds both pictures to each other, layer by layer.
@@ -171,7 +172,7 @@ fn a_device_that_fails_hands_over_and_says_so() {
             }
             Ok(gpu)
         };
-        with_fallback(open, &grown.pelt(), &lighting, &camera, &settings).unwrap()
+        with_fallback(open, &prepare(&grown.pelt(), &lighting, &settings).unwrap(), &camera).unwrap()
     };
     let drawn = draw_after(u32::MAX);
     assert_eq!(drawn.device, "cpu");

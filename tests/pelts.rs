@@ -2,15 +2,15 @@
 
 use furrier::data::camera::Camera;
 use furrier::data::fields::Fields;
+use furrier::data::light::Directional;
 use furrier::data::mesh::{Mesh, position_classes};
 use furrier::data::strands::Strands;
 use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::groom::{Colour, Guard, Length, Shape, Undercoat};
 use furrier::fur::grow::skin;
 use furrier::math::{DVec3, Vec3};
-use furrier::render::pelt::{Hair, Lighting, Pelt};
-use furrier::render::view::View;
-use furrier::shade::light::Directional;
+use furrier::stage::projection::View;
+use furrier::volume::pelt::{Hair, Lighting, Pelt};
 
 /// Skin and hair that a [`Pelt`] borrows.
 pub struct Grown {

@@ -8,10 +8,10 @@ use furrier::bake::units::Units;
 use furrier::data::camera::Camera;
 use furrier::data::film::Film;
 use furrier::data::strands::Strands;
+use furrier::hybrid::{Settings, draw};
 use furrier::math::{Quat, Vec3};
 use furrier::metrics::compare::{Light, compare};
 use furrier::preset::Preset;
-use furrier::render::picture::{Settings, draw};
 use predicates::prelude::*;
 
 fn length_m(strands: &Strands, hair: usize) -> f32 {

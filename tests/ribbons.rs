@@ -1,18 +1,19 @@
 //! Guard hair as ribbons: areas, order, and agreement with rays cast at the same hairs.
 
 use crate::pelts::{self, Grown};
+use furrier::cast::Caster;
+use furrier::cast::Geometry;
+use furrier::cast::Rays;
 use furrier::data::film::{Film, Layers};
+use furrier::data::ray::DepthRange;
+use furrier::hybrid::resolve::{Blending, Face, composite, settle};
+use furrier::hybrid::strands::ribbon::{Narrow, Share, Window, rasterise};
+use furrier::hybrid::strands::{Fragment, Knot, Parts};
+use furrier::hybrid::{Picture, Settings, draw};
 use furrier::math::hash::Stream;
 use furrier::math::lanes::{self, Isa};
 use furrier::math::{Vec3, radix};
-use furrier::render::cast::Caster;
-use furrier::render::pelt::Pelt;
-use furrier::render::picture::{Picture, Settings, draw};
-use furrier::render::rays::Rays;
-use furrier::render::resolve::{Blending, Face, composite, settle};
-use furrier::render::strands::ribbon::{Narrow, Share, Window, rasterise};
-use furrier::render::strands::{Fragment, Knot, Parts};
-use furrier::render::{DepthRange, Scene};
+use furrier::volume::pelt::Pelt;
 
 pub fn covered(a: &Knot, b: &Knot) -> f64 {
     let mut sum = 0.0;
@@ -194,7 +195,7 @@ pub fn ribbons_and_rays() -> (Film, Film) {
     let grown = sparse();
     let size = [128, 128];
     let ribbons = drawn(&grown, &Settings { size, ..Settings::default() }).film;
-    let scene = Scene { guard: Some(&grown.guard), skin: Some(&grown.mesh), ..Scene::default() };
+    let scene = Geometry { guard: Some(&grown.guard), skin: Some(&grown.mesh), ..Geometry::default() };
     let rays = Rays::Perspective { view: pelts::view(&pelts::camera(0.35), size), supersampling: 8 };
     (ribbons, Caster::new(scene).render(&rays, DepthRange::ALL))
 }

@@ -4,13 +4,13 @@ use crate::coats;
 use furrier::data::camera::Camera;
 use furrier::data::coat::Tile;
 use furrier::data::image::{Image8, srgb_from_linear, unorm8};
+use furrier::data::light::Directional;
 use furrier::error::Kind;
 use furrier::gpu::{Choice, Gpu};
 use furrier::math::{DVec3, Vec3, Vec4};
 use furrier::metrics::compare::{Difference, Light, compare, load};
 use furrier::runtime::gpu::Renderer;
 use furrier::runtime::{Picture, Show, View};
-use furrier::shade::light::Directional;
 use std::path::Path;
 
 fn look(eye: Vec3, size: [u32; 2]) -> View {

@@ -2,8 +2,9 @@
 
 use crate::common::shared;
 use crate::meshes;
+use furrier::coat::hair::TileHair;
 use furrier::coat::seams::look;
-use furrier::coat::tile::{TileHair, TileRecipe};
+use furrier::coat::tile::TileRecipe;
 use furrier::fur::field::{FieldSource, directions};
 use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::patch::{Parameterisation, Place, measure, measure_seams, parameterise};

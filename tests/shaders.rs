@@ -1,9 +1,9 @@
 //! Every shader parses and validates, and its structs lie in memory as Rust's do. Needs no adapter.
 
 use furrier::gpu::{Source, compose};
-use furrier::render::gpu::items::{InsideItem, LightItem, StrandItem, StretchItem, TriangleItem, VertexItem};
-use furrier::render::gpu::kernels;
-use furrier::render::gpu::layout::{
+use furrier::hybrid::gpu::items::{InsideItem, LightItem, StrandItem, StretchItem, TriangleItem, VertexItem};
+use furrier::hybrid::gpu::kernels;
+use furrier::hybrid::gpu::layout::{
     BlocksUniform, KindUniform, LobeUniform, SceneUniform, ViewUniform as CameraUniform,
 };
 use furrier::runtime::gpu::layout::{CoatVertex, FinInstance, LightUniform, Mip, SkinVertex, TileUniform, ViewUniform};
@@ -74,7 +74,7 @@ fn every_shader_file_is_tested() {
     let drawn = [SKIN, SHELL, FIN, RESOLVE];
     let all = drawn.iter().chain(&SHARED).chain(&kernels::ALL).chain(&kernels::SHARED);
     let tested: Vec<_> = all.map(|source| source.path.to_owned()).collect();
-    for kind in ["runtime", "render", "shared"] {
+    for kind in ["runtime", "hybrid", "shared"] {
         for entry in std::fs::read_dir(folder.join(kind)).unwrap() {
             let path = format!("{kind}/{}", entry.unwrap().file_name().to_string_lossy());
             assert!(tested.contains(&path), "shaders/{path} is not among the tested ones");

@@ -3,17 +3,17 @@
 use crate::pelts::{self, Grown};
 use furrier::bake::picture::{self as depicted, Only, Scene, studio};
 use furrier::bake::units::Units;
+use furrier::hybrid::{Settings, draw};
 use furrier::math::Vec3;
 use furrier::math::lanes::{self, F32s, Isa, Vec3s, Work};
 use furrier::preset::Preset;
-use furrier::render::mean::MeanShadow;
-use furrier::render::pelt::{Layer, Pelt};
-use furrier::render::picture::{Settings, draw};
-use furrier::render::reference::bvh::Ray;
-use furrier::render::reference::medium::{Counted, Medium};
-use furrier::render::reference::shell::Place;
-use furrier::render::reference::skin::Skin;
-use furrier::render::shell::lattice::{self, Lattice, Lattices};
+use furrier::reference::bvh::Ray;
+use furrier::reference::medium::{Counted, Medium};
+use furrier::reference::point::ShellPoint;
+use furrier::reference::skin::Skin;
+use furrier::volume::mean::MeanShadow;
+use furrier::volume::pelt::{Layer, Pelt};
+use furrier::volume::shell::lattice::{self, Lattice, Lattices};
 
 /// What a lattice holds at a place, in the first lane.
 struct Read<'a> {
@@ -142,7 +142,7 @@ fn strays_on_a_hat(b: Vec3, span: f32, shadow: impl Fn(&MeanShadow<'_>, &Pelt<'_
         }
         for share in [0.25_f32, 0.5, 0.75] {
             let t = share / mean.share(medium.shell.undercoat.height_m, 1.0);
-            let place = Place { triangle, b: b.as_dvec3(), t: f64::from(t) };
+            let place = ShellPoint { triangle, b: b.as_dvec3(), t: f64::from(t) };
             let ray = Ray::new(medium.slabs.position_m(&place), to_light.as_dvec3());
             let to_m = skin.meet(&ray, 1e-7).map_or(f64::INFINITY, |(at_m, _)| at_m);
             let expected = medium.depth_along(&ray, 1e-9, to_m, Counted::Both, 15.0);

@@ -1,20 +1,22 @@
 //! The fringe of a furred sphere against the same strands, ray cast from the same camera.
 
 use crate::{coats, pelts};
+use furrier::cast::Caster;
+use furrier::cast::Geometry;
+use furrier::cast::Rays;
 use furrier::coat::fins::FinParameters;
+use furrier::coat::hair::TileHair;
 use furrier::coat::shells::ShellParameters;
-use furrier::coat::tile::{TileHair, TileRecipe, bake};
+use furrier::coat::tile::{TileRecipe, bake};
 use furrier::data::camera::Camera;
 use furrier::data::fields::Fields;
 use furrier::data::mesh::Mesh;
+use furrier::data::ray::DepthRange;
 use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::groom::{Colour, Guard, Undercoat};
 use furrier::fur::grow;
 use furrier::gpu::{Choice, Gpu};
 use furrier::math::{Vec3, Vec4};
-use furrier::render::cast::Caster;
-use furrier::render::rays::Rays;
-use furrier::render::{DepthRange, Scene};
 use furrier::runtime::gpu::Renderer;
 use furrier::runtime::{Show, View};
 
@@ -84,7 +86,7 @@ fn measured(gpu: &Gpu, fibres: [&Fibre; 2], lean_rad: f32, shows: &[Show]) -> ([
         tint: vec![Vec3::ONE; count],
     };
     let [guard, undercoat] = [0, 1].map(|i| grow::skin::grow(fibres[i], &mesh, &fields, 3 + i as u64));
-    let scene = Scene { guard: Some(&guard), undercoat: Some(&undercoat), skin: Some(&mesh), ..Default::default() };
+    let scene = Geometry { guard: Some(&guard), undercoat: Some(&undercoat), skin: Some(&mesh), ..Default::default() };
     let rays = Rays::Perspective { view: pelts::view(&camera(), [PIXELS; 2]), supersampling: 3 };
     let strands = rings(&Caster::new(scene).render(&rays, DepthRange::ALL).alpha, height_m);
     let renderer = Renderer::new(gpu, &tiles, 2).unwrap();

@@ -4,14 +4,15 @@ use furrier::asset::coat::{Fallback, read_coat};
 use furrier::bake::picture::{Grown, Only, Scene as Depicted};
 use furrier::bake::units::Units;
 use furrier::bake::{Method, Request, bake};
+use furrier::cast::Caster;
+use furrier::cast::Geometry;
+use furrier::cast::Rays;
 use furrier::data::camera::Camera;
+use furrier::data::ray::DepthRange;
 use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::grow;
 use furrier::math::Vec3;
 use furrier::preset::Preset;
-use furrier::render::cast::Caster;
-use furrier::render::rays::Rays;
-use furrier::render::{DepthRange, Scene};
 use furrier::runtime::Show;
 use furrier::viewer::{Framing, Options, Subject, screenshot};
 
@@ -98,7 +99,7 @@ fn strands(preset: &Preset, width_m: f32) -> f32 {
     let fibre = Fibre::undercoat(&preset.undercoat, &preset.colour, pelt.skin.diagonal_m());
     let undercoat = grow::skin::grow(&fibre, pelt.skin, pelt.fields, 9);
     let guard = pelt.guard.map(|(strands, _)| strands);
-    let scene = Scene { guard, undercoat: Some(&undercoat), skin: Some(pelt.skin), ..Scene::default() };
+    let scene = Geometry { guard, undercoat: Some(&undercoat), skin: Some(pelt.skin), ..Geometry::default() };
     let rays = Rays::Perspective { view: crate::pelts::view(&camera(), [PIXELS; 2]), supersampling: 2 };
     ring(&Caster::new(scene).render(&rays, DepthRange::ALL).alpha, width_m)
 }

@@ -1,17 +1,19 @@
 //! The undercoat of a square as a volume: it repeats without a seam, crowds as it does on a skin, and stands between guard hairs in
 //! the order of depth.
 
+use furrier::cast::Caster;
+use furrier::cast::Geometry;
+use furrier::cast::Rays;
 use furrier::data::film::Film;
+use furrier::data::ray::DepthRange;
+use furrier::data::ray::Ray;
 use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::groom::{Clump, Colour, Guard, Shape, Undercoat as Table};
 use furrier::fur::grow;
 use furrier::fur::undercoat::{Pattern, Undercoat};
 use furrier::math::hash::Stream;
 use furrier::math::{Mat3, Vec2, Vec3};
-use furrier::render::cast::Caster;
-use furrier::render::medium::Medium;
-use furrier::render::rays::{Ray, Rays};
-use furrier::render::{DepthRange, Scene};
+use furrier::volume::medium::Medium;
 
 const EDGE_M: f32 = 8e-3;
 
@@ -96,12 +98,12 @@ pub fn film(range: DepthRange) -> Film {
     let worn = Mat3::from_cols(Vec3::X, Vec3::Y, Vec3::new(0.3, 0.0, 0.9));
     guard.points_m.iter_mut().for_each(|p| *p = worn * *p);
     let medium = Medium::new(&hair(), Some(Pattern::default()), EDGE_M).unwrap().worn(worn);
-    let scene = Scene {
+    let scene = Geometry {
         guard: Some(&guard),
         medium: Some(&medium),
         torus_m: Some(EDGE_M),
         upright_from_world: worn.inverse(),
-        ..Scene::default()
+        ..Geometry::default()
     };
     let direction = Vec3::new(-0.3, 0.5, -0.8).normalize();
     let ray = |i: usize| {

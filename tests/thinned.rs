@@ -2,10 +2,10 @@
 
 use crate::pelts::{self, Grown};
 use furrier::data::film::Film;
+use furrier::hybrid::strands::thin::Thinning;
+use furrier::hybrid::{Settings, draw};
 use furrier::math::Vec3;
 use furrier::metrics::compare::{Light, compare};
-use furrier::render::picture::{Settings, draw};
-use furrier::render::strands::thin::Thinning;
 
 const SIZE: [usize; 2] = [64, 64];
 

@@ -3,19 +3,20 @@
 use crate::pelts;
 use furrier::data::fields::Fields;
 use furrier::data::mesh::Mesh;
+use furrier::data::ray::DepthRange;
+use furrier::data::ray::Ray;
 use furrier::data::strands::Profile;
 use furrier::fur::groom::Shape;
 use furrier::fur::groom::fibre::Fibre;
 use furrier::math::hash::Stream;
 use furrier::math::{DVec2, DVec3, Mat3, Vec3};
-use furrier::render::DepthRange;
-use furrier::render::march::volume::{Resolution, Volume};
-use furrier::render::march::{Start, Stepping};
-use furrier::render::medium::Medium;
-use furrier::render::pelt::{Hair, Pelt};
-use furrier::render::rays::Ray;
-use furrier::render::shell::prism::Place;
-use furrier::render::shell::subelement;
+use furrier::volume::march::content::{Content, Resolution};
+use furrier::volume::march::volume::Volume;
+use furrier::volume::march::{Start, Stepping};
+use furrier::volume::medium::Medium;
+use furrier::volume::pelt::{Hair, Pelt};
+use furrier::volume::shell::prism::Place;
+use furrier::volume::shell::subelement;
 
 /// Upright or leaning cylinders of one length, whose ends are flat.
 pub struct Cylinders {
@@ -153,7 +154,8 @@ fn depth_of_pelt(pelt: &Pelt<'_>, direction: DVec3) -> f64 {
     let normals = mesh.smooth_normals();
     let subdivisions = vec![3; mesh.triangles.len()];
     let resolution = Resolution { pattern: None, ..Resolution::default() };
-    let volume = Volume::new(pelt, &normals, Vec3::Z, resolution, subdivisions).unwrap();
+    let content = Content::new(pelt, &normals, resolution).unwrap();
+    let volume = Volume::new(&content, subdivisions);
     // A triangle near the middle, entered at its top.
     let triangle = mesh.triangles.len() as u32 / 2 + 8;
     let place = Place { b: [0.3, 0.3], t: 1.0 };

@@ -141,7 +141,7 @@ fn a_report_says_what_was_drawn() {
     let (asset, coat) = creature();
     let report = viewer::screenshot(&asset, &coat, &small()).unwrap().report;
     for step in ["open device", "draw skin", "draw far shells", "draw fins", "draw near shells", "develop"] {
-        assert!(report.steps.iter().any(|s| s.name == step), "{step} is missing");
+        assert!(report.steps.0.iter().any(|s| s.name == step), "{step} is missing");
     }
     let furred: u64 = coat.primitives.iter().map(|p| p.triangles.len() as u64).sum();
     let all: u64 = asset.parts.iter().map(|p| p.stored.triangles.len() as u64).sum();

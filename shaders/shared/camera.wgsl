@@ -1,4 +1,4 @@
-// The camera, the pixels of the band that is drawn, and triangles met by pixels' rays: src/render/view.rs and flat.rs.
+// The camera, the pixels of the band that is drawn, and triangles met by pixels' rays: src/stage/projection.rs and src/hybrid/flat.rs.
 #define_import_path furrier::camera
 
 // In place of an infinite depth.

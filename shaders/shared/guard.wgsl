@@ -1,9 +1,9 @@
-// Guard hair: its profile and its fragments, as src/data/strands.rs and src/render/strands/.
+// Guard hair: its profile and its fragments, as src/data/strands.rs and src/hybrid/strands/.
 #define_import_path furrier::guard
 
 #import furrier::scene::{scene, Strand}
 
-// How often a strand is lit, as in src/render/strands/mod.rs.
+// How often a strand is lit, as in src/hybrid/strands/mod.rs.
 const LOOKS: u32 = 8u;
 
 // Barycentric coordinates of a strand's root.

@@ -1,4 +1,4 @@
-// Rays through the shell, from prism to prism (Andersen et al. 2016 §3.2), as src/render/march/.
+// Rays through the shell, from prism to prism (Andersen et al. 2016 §3.2), as src/volume/march/.
 #define_import_path furrier::march
 
 #import furrier::scene::{scene, triangles, prism_of, density_at, length_at, table_at, NOTHING}

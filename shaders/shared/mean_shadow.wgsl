@@ -1,4 +1,4 @@
-// The key light's shadow in hair as dense as it is in the mean, as src/render/mean.rs keeps it.
+// The key light's shadow in hair as dense as it is in the mean, as src/volume/mean/ keeps it.
 #define_import_path furrier::mean_shadow
 
 #import furrier::scene::{scene, triangles, tables, TABLE, LINEAR}

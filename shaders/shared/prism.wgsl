@@ -1,4 +1,4 @@
-// One prism of the shell and its sub-elements, as src/render/shell/.
+// One prism of the shell and its sub-elements, as src/volume/shell/.
 #define_import_path furrier::prism
 
 struct Prism {
@@ -110,7 +110,7 @@ fn subelement_centre(index: u32, d: u32) -> vec3<f32> {
     return 1.0 - (at + rest) / f32(n);
 }
 
-// Corners of the sub-elements of a level split d times: src/render/shell/lattice.rs.
+// Corners of the sub-elements of a level split d times: src/volume/shell/lattice.rs.
 fn corners_of(d: u32) -> u32 {
     let n = 1u << d;
     return (n + 1u) * (n + 2u) / 2u;

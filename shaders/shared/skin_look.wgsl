@@ -1,4 +1,4 @@
-// What bare or furred skin looks like, as src/render/skin.rs.
+// What bare or furred skin looks like, as src/hybrid/skin.rs.
 #define_import_path furrier::skin_look
 
 #import furrier::scene::{scene, lights, normal_at, lean_at, tint_at, density_at, length_at}

@@ -1,4 +1,4 @@
-// How undercoat crowds over a point of the skin, as src/fur/undercoat.rs, and how that is stored, as src/render/shell/block.rs.
+// How undercoat crowds over a point of the skin, as src/fur/undercoat.rs, and how that is stored, as src/volume/shell/block.rs.
 #define_import_path furrier::undercoat
 
 #import furrier::scene::{scene, triangles, vertices, clump_at, unit_or}

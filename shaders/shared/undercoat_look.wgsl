@@ -1,4 +1,4 @@
-// Light in undercoat, as src/render/march/light.rs.
+// Light in undercoat, as src/hybrid/undercoat_light.rs.
 #define_import_path furrier::undercoat_look
 
 #import furrier::scene::{scene, triangles, lights, tint_at, normal_at, density_at, length_at, table_at}

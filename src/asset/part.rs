@@ -168,7 +168,7 @@ pub fn collect(document: &Document, scene: &Scene, notes: &mut Notes) -> Result<
     let mut vertices = 0;
     for (mesh, nodes_of) in instances.into_iter().enumerate().filter(|(_, nodes)| !nodes.is_empty()) {
         let at = root.entry("meshes", mesh)?;
-        if super::coat::is_fallback(&at) {
+        if super::extension::is_fallback(&at) {
             continue;
         }
         for (primitive, at) in at.list("primitives")?.iter().enumerate() {

@@ -10,12 +10,12 @@ use crate::data::mesh::Mesh;
 use crate::error::Result;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::grow;
+use crate::hybrid::device::{self, Device, Drawn};
+use crate::hybrid::{self, Picture, Settings};
 use crate::math::{DVec3, Vec3};
 use crate::preset::Preset;
-use crate::render::device::{self, Device, Drawn};
-use crate::render::pelt::{Hair, Lighting, Pelt};
-use crate::render::picture::{Picture, Settings, draw};
-use crate::render::reference;
+use crate::reference;
+use crate::volume::pelt::{Hair, Lighting, Pelt};
 use std::f32::consts::PI;
 
 /// Vertical field of view of cameras that frame, degrees.
@@ -138,9 +138,9 @@ impl Grown {
     /// Renders a picture on the CPU.
     ///
     /// # Errors
-    /// As [`draw`].
+    /// As [`hybrid::draw`].
     pub fn draw(&self, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Picture> {
-        draw(&self.pelt(), lighting, camera, settings)
+        hybrid::draw(&self.pelt(), lighting, camera, settings)
     }
 
     /// Renders a picture on a device.
@@ -148,7 +148,7 @@ impl Grown {
     /// # Errors
     /// As [`device::draw`].
     pub fn draw_on(&self, device: &Device, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Drawn> {
-        device::draw(device, &self.pelt(), lighting, camera, settings)
+        device::draw(device, &hybrid::prepare(&self.pelt(), lighting, settings)?, camera)
     }
 
     /// Renders what [`Self::draw`] should have drawn, slowly.
@@ -194,7 +194,7 @@ impl Grown {
 pub fn studio(camera: &Camera) -> Lighting {
     let [right, up, back] = camera.axes().map(|axis| axis.as_vec3());
     let to_light = (up * 0.8 + back * 0.7 - right * 0.9).normalize();
-    let key = crate::shade::light::Directional { to_light, irradiance: Vec3::splat(2.2 * PI) };
+    let key = crate::data::light::Directional { to_light, irradiance: Vec3::splat(2.2 * PI) };
     Lighting { key, fill: Vec::new(), ambient: Vec3::splat(0.6), fill_on_undercoat: false }
 }
 

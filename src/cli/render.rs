@@ -8,18 +8,19 @@ use crate::bake::picture::{Grown, Only, Scene, studio};
 use crate::data::camera::Camera;
 use crate::data::film::Layers;
 use crate::error::{Error, Result};
+use crate::hybrid::device::{Device, Drawn};
+use crate::hybrid::resolve::Blending;
+use crate::hybrid::{Picture, Settings};
 use crate::math::{DVec3, Vec3};
+use crate::metrics::timing::Steps;
 use crate::preset::Preset;
-use crate::render::defocus::{self, Lens};
-use crate::render::develop::{Development, develop};
-use crate::render::device::{Device, Drawn};
-use crate::render::pelt::Lighting;
-use crate::render::picture::{Counts, Picture, Row, Settings};
-use crate::render::reference;
-use crate::render::resolve::Blending;
-use crate::render::view::View;
-use crate::shade::environment::Environment;
+use crate::reference;
+use crate::stage::defocus::{self, Lens};
+use crate::stage::environment::Environment;
+use crate::stage::projection::View;
+use crate::stage::tone::{Development, develop};
 use crate::viewer;
+use crate::volume::pelt::Lighting;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -186,7 +187,7 @@ impl Render {
         self.defocus(&mut drawn.picture, &camera, &grown)?;
         let picture = &drawn.picture;
         if kind == "exr" {
-            output::bytes(&self.output, &crate::render::exr::encode(&picture.film)?)?;
+            output::bytes(&self.output, &crate::stage::exr::encode(&picture.film)?)?;
         } else {
             let development = Development { exposure_ev: self.exposure, ..Development::default() };
             output::png(&self.output, &develop(&picture.film, &development))?;
@@ -281,8 +282,7 @@ impl Render {
         let focus_m = self.focus.or_else(|| defocus::middle_depth_m(&picture.film, &view)).unwrap_or(target_m);
         let lens = Lens::of_f_number(f_number, camera.vfov_deg.to_radians() as f32, focus_m);
         picture.film = defocus::defocus(&picture.film, &view, &lens);
-        let ms = start.elapsed().as_secs_f64() * 1e3;
-        picture.rows.push(Row { name: "depth of field", ms, bytes: 64 * picture.film.alpha.len() });
+        picture.steps.add_since("depth of field", start, 64 * picture.film.alpha.len());
         Ok(())
     }
 
@@ -291,8 +291,9 @@ impl Render {
         let settings =
             reference::Settings { lines: self.lines as usize, seed: self.ray_seed, ..reference::Settings::new(size) };
         let film = grown.reference(lighting, camera, &settings)?;
-        let rows = vec![Row { name: "reference", ms: start.elapsed().as_secs_f64() * 1e3, bytes: 0 }];
-        let picture = Picture { film, rows, counts: Counts::default() };
+        let mut steps = Steps::default();
+        steps.add_since("reference", start, 0);
+        let picture = Picture { film, steps, ..Picture::default() };
         Ok(Drawn { picture, device: "cpu".into(), notes: Vec::new() })
     }
 
@@ -323,13 +324,11 @@ fn pose(text: &str) -> Result<(String, f64)> {
 /// The rows of Andersen et al. 2016, Table 1.
 fn report(drawn: &Drawn) -> Value {
     let picture = &drawn.picture;
-    let rows: Vec<Value> =
-        picture.rows.iter().map(|row| json!({ "name": row.name, "ms": row.ms, "bytes": row.bytes })).collect();
     let counts = &picture.counts;
     json!({
         "schema_version": 1,
-        "steps": rows,
-        "total_ms": picture.rows.iter().map(|row| row.ms).sum::<f64>(),
+        "steps": picture.steps,
+        "total_ms": picture.steps.total_ms(),
         "device": drawn.device,
         "notes": drawn.notes,
         "counts": {

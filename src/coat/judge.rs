@@ -1,12 +1,12 @@
 //! How well a tile's stack reproduces its strands: coverage and structure, angle by angle, beside the usual constant α.
 
+use super::hair::TileHair;
 use super::shells::gains::directions;
-use super::tile::TileHair;
+use crate::cast::Caster;
+use crate::cast::Rays;
 use crate::data::coat::Tile;
+use crate::data::ray::DepthRange;
 use crate::math::{Mat3, Vec2, Vec3};
-use crate::render::DepthRange;
-use crate::render::cast::Caster;
-use crate::render::rays::Rays;
 use crate::runtime::cpu::{Stack, View, slab_optical_depth};
 use serde::Serialize;
 

@@ -1,8 +1,9 @@
-//! Floor 5: the product. Shells and fins are baked by asking [`crate::render`] and judged by asking [`crate::runtime`].
+//! Floor 5: the product. Shells and fins are baked by asking [`crate::cast`] and judged by asking [`crate::runtime`].
 
 pub mod atlas;
 pub mod axes;
 pub mod fins;
+pub mod hair;
 pub mod judge;
 pub mod measures;
 pub mod seams;

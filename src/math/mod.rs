@@ -8,6 +8,7 @@ pub mod radix;
 pub mod sampling;
 pub mod sparse;
 pub mod split;
+pub mod table;
 
 pub use glam::{
     DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4, I64Vec3, IVec2, Mat2, Mat3, Mat4, Quat, UVec2, UVec3, Vec2,

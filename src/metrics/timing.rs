@@ -18,13 +18,55 @@ pub struct Step {
     pub bytes: u64,
 }
 
+/// Steps in the order done, one of a name.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct Steps(pub Vec<Step>);
+
+impl Steps {
+    /// Adds time to a step, and memory where it is the most so far.
+    pub fn add(&mut self, name: &str, ms: f64, bytes: u64) {
+        match self.0.iter_mut().find(|step| step.name == name) {
+            Some(step) => {
+                step.ms += ms;
+                step.bytes = step.bytes.max(bytes);
+            }
+            None => self.0.push(Step { name: name.to_owned(), ms, bytes }),
+        }
+    }
+
+    /// [`Self::add`] of the time since `start`.
+    pub fn add_since(&mut self, name: &str, start: Instant, bytes: usize) {
+        self.add(name, start.elapsed().as_secs_f64() * 1e3, bytes as u64);
+    }
+
+    /// Takes time from a step, to be given to another: not more than it has.
+    pub fn take(&mut self, name: &str, ms: f64) {
+        if let Some(step) = self.0.iter_mut().find(|step| step.name == name) {
+            step.ms = (step.ms - ms).max(0.0);
+        }
+    }
+
+    /// These steps and then others.
+    pub fn followed_by(&self, others: &Self) -> Self {
+        let mut all = self.clone();
+        others.0.iter().for_each(|step| all.add(&step.name, step.ms, step.bytes));
+        all
+    }
+
+    /// Time of all steps, ms.
+    pub fn total_ms(&self) -> f64 {
+        self.0.iter().map(|step| step.ms).sum()
+    }
+}
+
 /// What a command did and what it cost.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
     /// [`SCHEMA_VERSION`].
     pub schema_version: u32,
     /// In the order done.
-    pub steps: Vec<Step>,
+    pub steps: Steps,
     /// From the report's making to its end, ms.
     pub total_ms: f64,
     /// Most memory this process ever held, bytes; `None` where the system does not say.
@@ -50,7 +92,7 @@ impl Recorder {
     pub fn new(device: impl Into<String>) -> Self {
         let report = Report {
             schema_version: SCHEMA_VERSION,
-            steps: Vec::new(),
+            steps: Steps::default(),
             total_ms: 0.0,
             peak_bytes: None,
             device: device.into(),
@@ -70,13 +112,7 @@ impl Recorder {
 
     /// Adds a step that was timed elsewhere; a step of the same name is added to.
     pub fn row(&mut self, name: &str, ms: f64, bytes: u64) {
-        match self.report.steps.iter_mut().find(|step| step.name == name) {
-            Some(step) => {
-                step.ms += ms;
-                step.bytes = step.bytes.max(bytes);
-            }
-            None => self.report.steps.push(Step { name: name.to_owned(), ms, bytes }),
-        }
+        self.report.steps.add(name, ms, bytes);
     }
 
     /// Adds to a count.

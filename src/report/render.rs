@@ -5,12 +5,12 @@ use crate::bake::picture::{Grown, studio};
 use crate::data::camera::Camera;
 use crate::data::film::Film;
 use crate::error::Result;
+use crate::hybrid::resolve::Blending;
+use crate::hybrid::{Picture, Settings};
 use crate::metrics::compare::{Light, compare};
 use crate::metrics::timing::SCHEMA_VERSION;
-use crate::render::march::Stepping;
-use crate::render::march::volume::Resolution;
-use crate::render::picture::{Picture, Settings};
-use crate::render::resolve::Blending;
+use crate::volume::march::Stepping;
+use crate::volume::march::content::Resolution;
 use serde::Serialize;
 
 /// What errors are measured against, and its own noise.
@@ -126,7 +126,7 @@ pub fn sweep(grown: &Grown, options: &Options, progress: &mut dyn FnMut(&str)) -
 
 /// Time of all of a picture's steps, ms.
 fn ms(picture: &Picture) -> f64 {
-    picture.rows.iter().map(|row| row.ms).sum()
+    picture.steps.total_ms()
 }
 
 fn point(way: &Way, picture: &Picture, truth: &Light) -> Result<Point> {
@@ -136,7 +136,7 @@ fn point(way: &Way, picture: &Picture, truth: &Light) -> Result<Point> {
         sweep: way.sweep.clone(),
         value: way.value,
         ms: ms(picture),
-        bytes: picture.rows.iter().map(|row| row.bytes as u64).max().unwrap_or(0),
+        bytes: picture.steps.0.iter().map(|step| step.bytes).max().unwrap_or(0),
         flip: difference.flip,
         flip_p95: difference.flip_p95,
         rel_mse: difference.rel_mse,

@@ -7,8 +7,8 @@
 
 use crate::data::coat::{GAIN_ANGLES_DEG, Sampled, ShellStack, Tile};
 use crate::data::image::linear_from_srgb;
+use crate::data::light::luminance;
 use crate::math::{Mat2, Mat3, Vec2, Vec3};
-use crate::shade::light::luminance;
 
 /// Steepest view that the law is evaluated at: cos 87°.
 const LEAST_COSINE: f32 = 0.052;

@@ -3,8 +3,8 @@
 use crate::asset::material::Wrap;
 use crate::data::coat::{FinEdge, Tile};
 use crate::data::image::Image8;
+use crate::data::light::Directional;
 use crate::math::{Mat4, Vec2, Vec3, Vec4};
-use crate::shade::light::Directional;
 use std::borrow::Cow;
 
 /// Lights that one picture can have.

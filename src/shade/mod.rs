@@ -1,12 +1,10 @@
-//! Floor 2: how a hair scatters light, and the lights. Formulas stand once, generic over f32 and f64 (`docs/steps/shade.md`).
+//! Floor 2: how a hair scatters light. Formulas stand once, generic over f32 and f64 (`docs/steps/shade.md`).
 //!
 //! All scattering functions S are of the form L(ω_o) = ∫ S(ω_i, ω_o) L(ω_i) cos θ_i dω_i over the whole sphere (Marschner
 //! et al. 2003), θ being the inclination to the plane at a right angle to the hair. A hair under uniform light of radiance 1
 //! then sends back ∫ S cos θ_i dω_i, which is its albedo and must not pass 1.
 
-pub mod environment;
 pub mod kajiya_kay;
-pub mod light;
 pub mod lobes;
 mod real;
 

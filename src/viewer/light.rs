@@ -1,9 +1,9 @@
 //! Lights: as flags say, or those of a small studio.
 
 use crate::data::camera::Camera;
+use crate::data::light::Directional;
 use crate::error::{Error, Result};
 use crate::math::Vec3;
-use crate::shade::light::Directional;
 
 /// Radiance of the studio's walls, linear RGB.
 pub const STUDIO_AMBIENT: Vec3 = Vec3::new(0.42, 0.44, 0.48);

@@ -14,13 +14,13 @@ pub use light::{parse_light, parse_triple};
 use crate::asset::Asset;
 use crate::data::coat::Coat;
 use crate::data::image::Image8;
+use crate::data::light::Directional;
 use crate::error::{Error, Result};
 use crate::gpu::{Choice, Gpu};
 use crate::math::{DVec3, Vec3};
 use crate::metrics::timing::{Recorder, Report};
 use crate::runtime::gpu::{Drawn, Renderer};
 use crate::runtime::{Picture, Scene, Show, View};
-use crate::shade::light::Directional;
 
 /// How to look at a coat.
 #[derive(Clone, Debug)]

@@ -2,10 +2,10 @@
 
 use furrier::math::Vec3;
 use furrier::math::hash::Stream;
-use furrier::shade::environment::Environment;
 use furrier::shade::kajiya_kay::KajiyaKay;
 use furrier::shade::lobes::{Lobe, LobeParameters, Lobes};
 use furrier::shade::{Angles, Real};
+use furrier::stage::environment::Environment;
 use std::f64::consts::PI;
 
 /// ∫ S cos θ_i dω_i over the sphere for an eye at inclination `theta_out`.

@@ -1,8 +1,7 @@
 //! Shells as plain glTF, for viewers that do not know the extension.
 
 use super::flatten;
-use super::set_extension;
-use super::write::part_of;
+use super::parts::{part_of, set_extension};
 use crate::asset::accessor::Layout;
 use crate::asset::document::Document;
 use crate::asset::encode::Use;

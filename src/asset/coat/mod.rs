@@ -2,6 +2,7 @@
 
 mod fallback;
 mod flatten;
+mod parts;
 mod read;
 mod textures;
 mod write;
@@ -9,15 +10,11 @@ mod write;
 pub use fallback::Fallback;
 pub use flatten::shells as flatten_shells;
 pub use read::{coat_of, read_coat};
-use write::set_extension;
 pub use write::{dress, refuse_second, write_coat};
 
-use super::json::At;
+pub use super::extension::NAME;
 use crate::data::coat::{Coat, CoatPrimitive, Sampled};
-use serde_json::json;
 
-/// Name of the extension.
-pub const NAME: &str = "FURRIER_mesh_fur";
 /// Newest version of the extension; all up to it are read.
 pub const VERSION: u64 = 2;
 
@@ -33,9 +30,4 @@ pub fn version_of(coat: &Coat) -> u64 {
 /// The primitive of the asset that a coat primitive lies on.
 fn owner(primitive: &CoatPrimitive) -> (usize, usize) {
     (primitive.mesh, primitive.primitive)
-}
-
-/// Whether a mesh is the fallback of another's coat.
-pub(super) fn is_fallback(mesh: &At<'_>) -> bool {
-    mesh.get("extensions").and_then(|e| e.get(NAME)?.get("fallback")).is_some_and(|f| f.value == &json!(true))
 }

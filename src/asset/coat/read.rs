@@ -1,6 +1,6 @@
 //! A coat out of a file.
 
-use super::write::{check, part_of};
+use super::parts::{check, part_of};
 use super::{NAME, VERSION, textures};
 use crate::asset::json::At;
 use crate::asset::{self, Asset};

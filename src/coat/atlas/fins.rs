@@ -2,7 +2,7 @@
 
 use super::Skin;
 use super::judge::places;
-use crate::coat::tile::TileHair;
+use crate::coat::hair::TileHair;
 use crate::coat::wear::offset_over_height;
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
@@ -13,7 +13,7 @@ use crate::fur::undercoat::{Columns, Pattern, Undercoat};
 use crate::math::hash::{combine, unit_f32};
 use crate::math::lanes::Scalar;
 use crate::math::{Mat3, Vec2, Vec3};
-use crate::render::medium::Medium;
+use crate::volume::medium::Medium;
 
 /// Places whose hair stands side by side in the texture.
 const PLACES: usize = 8;

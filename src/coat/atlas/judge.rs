@@ -2,6 +2,9 @@
 //! the undercoat that grow there and through the shells as they lie over them.
 
 use super::flatten::axes;
+use crate::cast::Caster;
+use crate::cast::Geometry;
+use crate::cast::Rays;
 use crate::coat::axes::Stand;
 use crate::coat::judge::Row;
 use crate::coat::wear::offset_over_height;
@@ -9,20 +12,20 @@ use crate::data::coat::{Sampled, Tile};
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::data::patches::Patches;
+use crate::data::ray::DepthRange;
+use crate::data::ray::Ray;
 use crate::data::strands::Strands;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::grow;
 use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::hash::{combine, unit_f32};
 use crate::math::{Mat3, Vec2, Vec3, orthonormal_basis, sampling};
-use crate::render::cast::Caster;
-use crate::render::march::enter::within;
-use crate::render::march::volume::{Resolution, Volume};
-use crate::render::march::{Journey, Start, Stepping};
-use crate::render::pelt::{Hair, Pelt};
-use crate::render::rays::{Ray, Rays};
-use crate::render::{DepthRange, Scene};
 use crate::runtime::cpu::{Stack, View, slab_optical_depth};
+use crate::volume::march::content::{Content, Resolution};
+use crate::volume::march::volume::Volume;
+use crate::volume::march::{Journey, Start, Stepping};
+use crate::volume::pelt::{Hair, Pelt};
+use crate::volume::shell::locate::within;
 use rayon::prelude::*;
 
 /// Angles between ray and normal that are judged, degrees. Beyond them a ray passes more than one place of a curved skin.
@@ -80,7 +83,8 @@ pub fn surface_tables(worn: &Worn<'_>, groups: &[Vec<Place>]) -> Vec<Vec<Row>> {
     let all: Vec<usize> = (0..worn.mesh.triangles.len()).collect();
     let all = (area_m2 * worn.hair[0].density_per_m2 <= AT_ONCE).then(|| worn.grown(&all));
     let all = all.as_ref().map(caster);
-    let volume = worn.volume(&normals);
+    let content = worn.content(&normals);
+    let volume = content.as_ref().map(|content| Volume::new(content, worn.subdivisions()));
     let judge = Judge { worn, stack: &stack, normals: &normals, all: all.as_ref(), volume: volume.as_ref() };
     groups.iter().map(|places| judge.rows(places)).collect()
 }
@@ -92,7 +96,7 @@ impl<'a> Worn<'a> {
     }
 
     /// The undercoat, as a picture has it.
-    fn volume(&self, normals: &[Vec3]) -> Option<Volume<'a>> {
+    fn content(&self, normals: &[Vec3]) -> Option<Content<'a>> {
         let pelt = Pelt {
             skin: self.mesh,
             fields: self.fields,
@@ -101,7 +105,11 @@ impl<'a> Worn<'a> {
             undercoat: Some(self.hair[1]),
             hair: Hair::default(),
         };
-        // Two sub-elements to the finest detail.
+        Content::new(&pelt, normals, Resolution::default())
+    }
+
+    /// How finely it is resolved: two sub-elements to the finest detail.
+    fn subdivisions(&self) -> Vec<u8> {
         let wanted_m = 0.5 * Undercoat::new(self.hair[1], Some(Pattern::default())).detail_m();
         let resolution = Resolution::default();
         let subdivisions = (0..self.mesh.triangles.len()).map(|t| {
@@ -109,7 +117,7 @@ impl<'a> Worn<'a> {
             let edge_m = (p.distance(q) + q.distance(r) + r.distance(p)) / 3.0;
             libm::log2f(edge_m / wanted_m).ceil().clamp(0.0, resolution.most_subdivisions as f32) as u8
         });
-        Volume::new(&pelt, normals, Vec3::Z, resolution, subdivisions.collect())
+        subdivisions.collect()
     }
 }
 
@@ -133,7 +141,7 @@ fn kept(strands: &Strands, passes: impl Fn(Vec3, f32) -> bool) -> Strands {
 }
 
 fn caster(guard: &Strands) -> Caster<'_> {
-    Caster::new(Scene { guard: Some(guard), ..Scene::default() })
+    Caster::new(Geometry { guard: Some(guard), ..Geometry::default() })
 }
 
 /// Finer than a picture's steps: what they miss would count as the stack's error.
@@ -253,7 +261,7 @@ impl Judge<'_> {
             Some((i, Journey { origin_m, direction: -ray.direction, start: start(ray)?, far_m }))
         };
         let (found, journeys): (Vec<usize>, Vec<Journey>) = rays.iter().enumerate().filter_map(journey).unzip();
-        for (i, depth) in found.into_iter().zip(volume.depths_along(&journeys, &STEPPING, 0.0, OPAQUE_DEPTH)) {
+        for (i, depth) in found.into_iter().zip(volume.depths_along(&journeys, &STEPPING, 0.0, OPAQUE_DEPTH).0) {
             depths[i] = depth;
         }
         depths

@@ -8,11 +8,12 @@ pub mod judge;
 pub mod skirt;
 
 use crate::coat::fins::texture;
+use crate::coat::hair::{TileHair, leaning};
 use crate::coat::shells::deposit::{Layout, Voxels, mean_slopes};
 use crate::coat::shells::encode::{Raw, encode};
 use crate::coat::shells::undercoat::{self, Profile};
 use crate::coat::shells::{ends, gains, shadow};
-use crate::coat::tile::{TileHair, TileRecipe, leaning, slab_means};
+use crate::coat::tile::{TileRecipe, slab_means};
 use crate::data::coat::{Sampled, Tile};
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;

@@ -1,14 +1,15 @@
 //! The fin texture's texels: a slab of hair composited along the skin.
 
 use super::FinParameters;
+use crate::cast::Caster;
+use crate::cast::Rays;
+use crate::coat::hair::TileHair;
 use crate::coat::shells::encode::signed8;
-use crate::coat::tile::TileHair;
 use crate::data::coat::FinTexture;
 use crate::data::image::{Image8, srgb_from_linear, unorm8};
+use crate::data::ray::DepthRange;
+use crate::data::ray::Ray;
 use crate::math::Vec3;
-use crate::render::DepthRange;
-use crate::render::cast::Caster;
-use crate::render::rays::{Ray, Rays};
 
 /// Rays per texel edge.
 const SUPERSAMPLING: usize = 2;

@@ -2,11 +2,11 @@
 //! the stack, in the slab where it is first hit.
 
 use super::deposit::{Voxels, pieces, splat};
+use crate::cast::Caster;
+use crate::cast::Geometry;
+use crate::cast::Rays;
 use crate::data::strands::Strands;
 use crate::math::{Vec2, Vec3};
-use crate::render::Scene;
-use crate::render::cast::Caster;
-use crate::render::rays::Rays;
 
 /// Rays per texel edge.
 const RAYS: usize = 4;
@@ -34,7 +34,7 @@ pub fn guard_ends(strands: &Strands, guard: &Voxels, slopes: &[Vec2]) -> Vec<f32
     let (slab_m, edge_m) = (layout.slab_m, layout.texel_m * layout.size[0] as f32);
     let starts_m = starts_m(slopes, slab_m);
     let straight = straightened(strands, slopes, &starts_m, slab_m);
-    let caster = Caster::new(Scene { guard: Some(&straight), torus_m: Some(edge_m), ..Scene::default() });
+    let caster = Caster::new(Geometry { guard: Some(&straight), torus_m: Some(edge_m), ..Geometry::default() });
     let (size, fine) = (layout.size[0], layout.size[0] * RAYS);
     let top_m = slab_m * layout.slabs as f32;
     let rays = Rays::Tile { edge_m, top_m, direction: Vec3::NEG_Z, size: [fine, fine], supersampling: 1 };

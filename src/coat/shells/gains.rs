@@ -1,10 +1,11 @@
 //! Gains g(θ) per mip: what makes the stack's mean transmittance that of its strands at every angle.
 
+use crate::cast::Caster;
+use crate::cast::Geometry;
+use crate::cast::Rays;
 use crate::data::coat::{GAIN_ANGLES_DEG, Tile};
+use crate::data::ray::DepthRange;
 use crate::math::{Mat3, Vec2, Vec3};
-use crate::render::cast::Caster;
-use crate::render::rays::Rays;
-use crate::render::{DepthRange, Scene};
 use crate::runtime::cpu::{Stack, View};
 use rayon::prelude::*;
 
@@ -36,7 +37,7 @@ fn along_edge(theta_deg: f32, n: usize) -> usize {
 
 /// Mean transmittance at each of [`GAIN_ANGLES_DEG`] (in the tile) of strands worn under `skin_from_tile`, which reach
 /// up to `top_m` there.
-pub fn strand_transmittance(scene: Scene<'_>, edge_m: f32, top_m: f32, skin_from_tile: Mat3) -> [f64; 9] {
+pub fn strand_transmittance(scene: Geometry<'_>, edge_m: f32, top_m: f32, skin_from_tile: Mat3) -> [f64; 9] {
     let caster = Caster::new(scene);
     let mut black = false;
     GAIN_ANGLES_DEG.map(|theta| {

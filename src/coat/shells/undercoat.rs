@@ -2,7 +2,7 @@
 
 use super::deposit::{Layout, Voxels};
 use crate::math::{Vec2, Vec3};
-use crate::render::medium::Medium;
+use crate::volume::medium::Medium;
 use std::f32::consts::FRAC_PI_4;
 
 /// Parts that a slab's height is looked at in.

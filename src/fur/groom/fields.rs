@@ -1,14 +1,12 @@
 //! A coat's fields over a mesh: preset, vertex attributes and maps into one value per vertex.
 
 use super::Groom;
+use super::lean::lean;
 use super::maps::{Maps, sample, sample_colour};
 use super::unfold::unfold;
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::math::{Vec2, Vec3};
-
-/// Least angle between hair and skin, as its sine: a shell whose offset lies in the skin would have no height.
-const LEAST_RISE: f32 = 0.17;
 
 /// Gathers the fields.
 ///
@@ -43,22 +41,4 @@ pub fn gather(mesh: &Mesh, groom: &Groom, maps: &Maps, comb: Vec<Vec3>, tint: Ve
             _ => tint,
         },
     }
-}
-
-/// Root to tip of the mean hair, unit: leaned along the comb, pulled to the ground, never into the skin.
-fn lean(groom: &Groom, normal: Vec3, comb: Vec3) -> Vec3 {
-    let (sin, cos) = libm::sincosf(groom.lean_deg.to_radians());
-    let combed = if comb == Vec3::ZERO { normal } else { normal * cos + comb * sin };
-    let pulled = (combed + Vec3::NEG_Y * groom.gravity).normalize_or(normal);
-    raised(pulled, normal)
-}
-
-/// A lean turned up to the least angle with the skin.
-pub(super) fn raised(lean: Vec3, normal: Vec3) -> Vec3 {
-    let rise = lean.dot(normal);
-    if rise >= LEAST_RISE {
-        return lean;
-    }
-    let flat = (lean - normal * rise).normalize_or_zero();
-    flat * (1.0 - LEAST_RISE * LEAST_RISE).sqrt() + normal * LEAST_RISE
 }

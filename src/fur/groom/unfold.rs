@@ -3,7 +3,7 @@
 //! Hair in a hollow narrower than it is long runs into itself. Real hair gives way: leans are averaged with those around them
 //! until no prism of the shell turns inside out, and nowhere else. What cannot give way is as short as there is room.
 
-use super::fields::raised;
+use super::lean::raised;
 use crate::data::mesh::Mesh;
 use crate::math::Vec3;
 use rayon::prelude::*;

@@ -10,12 +10,12 @@ use super::stage;
 use crate::asset::{Asset, Part, Pose, Posed};
 use crate::data::coat::{Coat, CoatPrimitive};
 use crate::data::image::Image8;
+use crate::data::light::Directional;
 use crate::data::mesh::Mesh;
 use crate::data::patches::Patches;
 use crate::error::Result;
 use crate::math::Vec3;
 use crate::runtime::{Scene, Skin};
-use crate::shade::light::Directional;
 use std::f32::consts::PI;
 
 /// Skin without fur, linear RGB.

@@ -1,0 +1,93 @@
+// Light on guard hair, one thread per strand, as src/hybrid/guard_light.rs.
+#import furrier::scene::{scene, triangles, Strand, strands, lights, point_of, normal_at, lean_at, density_at, length_at, unit_or, NOTHING, AT_BORDER}
+#import furrier::camera::view
+#import furrier::guard::{LOOKS, guard_ramp, root_of}
+#import furrier::fur_light::{angles_of, cos_of, guard_lobes, shadow_power, slant_depth, sky_depth, terminator, above_both}
+#import furrier::mean_shadow::{mean_depths, tips_m}
+#import furrier::undercoat_look::key_depth
+
+// Logarithms of radiance, LOOKS of each strand, three numbers each.
+@group(3) @binding(0) var<storage, read_write> looks: array<f32>;
+
+// Mean of the two pieces that meet in point `i` of a strand, twice their length.
+fn step_at(first: u32, i: u32) -> vec3<f32> {
+    let last = scene.points_per_strand - 1u;
+    let step = point_of(first + min(i + 1u, last)) - point_of(first + max(i, 1u) - 1u);
+    return step * select(1.0, 2.0, i == 0u || i >= last);
+}
+
+// Optical depth towards the key light: a hair is shadowed as the column over its own root is at its height, in the mean, but
+// beside an open border, where clumps are seen from their sides, with its clumps.
+fn depth_of(triangle: u32, b: vec3<f32>, height_m: f32, length: f32) -> f32 {
+    let t = height_m / max(scene.undercoat_kind.top_m * length, 1e-30);
+    let place = triangles[triangle];
+    if (place.traits & AT_BORDER) != 0u && place.shadow_at != NOTHING && t <= 1.0 {
+        return key_depth(triangle, b, max(t, 0.0));
+    }
+    let depths = mean_depths(triangle, b, height_m / max(tips_m() * length, 1e-30));
+    return depths.x + depths.y;
+}
+
+// Logarithm of what a strand sends to the eye at its look `i`.
+fn log_look(strand: Strand, first: u32, i: u32) -> vec3<f32> {
+    let s = sqrt(f32(i) / f32(LOOKS - 1u));
+    let at = s * f32(scene.points_per_strand - 1u);
+    let piece = min(u32(at), scene.points_per_strand - 2u);
+    let share = at - f32(piece);
+    let b = root_of(strand);
+    let normal = normal_at(strand.triangle, b);
+    let lean = lean_at(strand.triangle, b, normal);
+    let point_m = mix(point_of(first + piece), point_of(first + piece + 1u), share);
+    // The hair's direction turns evenly from point to point.
+    let along = unit_or(mix(step_at(first, piece), step_at(first, piece + 1u), share), lean);
+    // Height along the lean, so that a leaning coat's layers are as thick as its hairs are long.
+    let height_m = dot(point_m - point_of(first), normal) / max(dot(lean, normal), 0.05);
+    let length = length_at(strand.triangle, b);
+    let above = above_both(density_at(strand.triangle, b), length, height_m);
+    let albedo = strand.tint * guard_ramp(s);
+    let to_eye = unit_or(view.eye_m - point_m, normal);
+
+    let power = shadow_power(albedo * scene.guard_albedo);
+    var sum = scene.ambient * albedo * scene.guard_albedo * exp(-power * sky_depth(above));
+    for (var k = 0u; k < scene.light_count; k++) {
+        let light = lights[k];
+        let open = terminator(light.to_light, normal);
+        if open <= 0.0 {
+            continue;
+        }
+        let angles = angles_of(along, light.to_light, to_eye);
+        let s = guard_lobes(angles);
+        let scattered = vec3(s.x) + albedo * s.y + albedo * albedo * s.z;
+        var depth = 0.0;
+        if k == 0u {
+            depth = depth_of(strand.triangle, b, height_m, length);
+        } else {
+            depth = slant_depth(above, light.to_light, normal, lean);
+        }
+        sum += light.irradiance * scattered * exp(-power * depth) * (cos_of(angles.sin_in) * open);
+    }
+    return log(max(sum, vec3(1.1754944e-38)));
+}
+
+fn put(index: u32, look: vec3<f32>) {
+    looks[3u * index] = look.x;
+    looks[3u * index + 1u] = look.y;
+    looks[3u * index + 2u] = look.z;
+}
+
+@compute @workgroup_size(64)
+fn shade(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = (group.y * groups.x + group.x) * 64u + local;
+    if index >= scene.strand_count {
+        return;
+    }
+    let strand = strands[index];
+    let first = index * scene.points_per_strand;
+    for (var i = 0u; i < LOOKS; i++) {
+        put(index * LOOKS + i, log_look(strand, first, i));
+    }
+}

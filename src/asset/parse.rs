@@ -1,0 +1,156 @@
+//! A glTF document from bytes: its buffers joined and decoded, and nothing left unchecked.
+
+use super::document::Document;
+use super::{glb, meshopt, uri, validate};
+use crate::error::{Error, Result};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// Extensions that may be required: they are read here, or change nothing that matters to fur.
+const UNDERSTOOD: [&str; 4] =
+    ["KHR_mesh_quantization", "KHR_texture_transform", "EXT_meshopt_compression", "EXT_texture_webp"];
+
+impl Document {
+    /// Reads `.glb` or `.gltf` bytes; `path` names them and tells where their buffers lie.
+    ///
+    /// # Errors
+    /// Names the field of the first fault: nothing that a later step relies on is left unchecked.
+    pub fn parse(bytes: &[u8], path: &Path, warnings: &mut Vec<String>) -> Result<Self> {
+        let (text, chunk) = if glb::is_glb(bytes) {
+            glb::parse(bytes, warnings)?
+        } else if bytes.first().is_some_and(|b| b"{ \n\r\t\xEF".contains(b)) {
+            (bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes), &[][..])
+        } else {
+            let start: String = bytes.iter().take(4).map(|b| std::ascii::escape_default(*b).to_string()).collect();
+            return Err(Error::input("this is not a glTF file")
+                .with_field("first bytes")
+                .with_found(if start.is_empty() { "an empty file".to_owned() } else { format!("`{start}`") })
+                .with_expected("`glTF`, or `{` of a JSON text")
+                .with_hint("inputs are .glb, .gltf and .obj"));
+        };
+        let json: Value = serde_json::from_slice(text).map_err(|error| {
+            Error::input("the JSON cannot be read")
+                .with_field("JSON")
+                .with_found(error)
+                .with_expected("valid JSON, nested at most 127 deep")
+                .with_hint("the file is damaged or its exporter faulty; export it again")
+        })?;
+        let folder = path.parent().map(|p| if p.as_os_str().is_empty() { PathBuf::from(".") } else { p.to_owned() });
+        let mut document =
+            Self { json, binary: Vec::new(), name: path.to_owned(), folder, files: vec![path.to_owned()] };
+        document.check_version()?;
+        document.check_required()?;
+        document.join_buffers(chunk)?;
+        meshopt::decode(&mut document, warnings)?;
+        validate::document(&document)?;
+        Ok(document)
+    }
+
+    fn check_version(&self) -> Result<()> {
+        let version = self.root().need("asset")?.need("version")?;
+        if version.text()?.starts_with("2.") {
+            return Ok(());
+        }
+        Err(version.fault("2.0").with_hint("convert glTF 1 files to 2.0 first"))
+    }
+
+    fn check_required(&self) -> Result<()> {
+        for required in self.root().list("extensionsRequired")? {
+            let name = required.text()?;
+            if UNDERSTOOD.contains(&name) || name.starts_with("KHR_materials_") || name == "KHR_lights_punctual" {
+                continue;
+            }
+            let hint = match name {
+                "KHR_draco_mesh_compression" => {
+                    "decode it first, for example with `gltf-transform copy in.glb out.glb`"
+                }
+                "KHR_texture_basisu" => "export with PNG or JPEG textures",
+                _ => "export without this extension, or as optional",
+            };
+            return Err(Error::input(format!("the file requires the extension {name}, which is not supported"))
+                .with_field(required.path.clone())
+                .with_found(name)
+                .with_expected(format!("one of {}, or KHR_materials_*", UNDERSTOOD.join(", ")))
+                .with_hint(hint));
+        }
+        Ok(())
+    }
+
+    /// Brings all buffers into `binary`, one behind the other, and points the buffer views there.
+    fn join_buffers(&mut self, chunk: &[u8]) -> Result<()> {
+        let mut starts = Vec::new();
+        let (mut binary, mut files) = (Vec::new(), Vec::new());
+        for (i, buffer) in self.root().list("buffers")?.iter().enumerate() {
+            let length_at = buffer.need("byteLength")?;
+            let length = length_at.size()?;
+            let bytes: Vec<u8> = match buffer.get("uri") {
+                Some(at) => match uri::resolve(at.text()?, self.folder.as_deref(), &at.path)? {
+                    uri::Target::Data { base64 } => uri::decode_base64(base64, &at.path)?,
+                    uri::Target::File(path) => {
+                        files.push(path.clone());
+                        uri::read_file(&path).map_err(|e| Error { field: Some(at.path.clone()), ..e })?
+                    }
+                },
+                // Stands for what EXT_meshopt_compression decodes to.
+                None if meshopt::is_fallback(buffer) && (i > 0 || chunk.is_empty()) => {
+                    starts.push((usize::MAX, length));
+                    continue;
+                }
+                None if i == 0 => chunk.to_vec(),
+                None => return Err(buffer.fault("a uri")),
+            };
+            let Some(bytes) = bytes.get(..length) else {
+                return Err(Error::input("a buffer is shorter than it says")
+                    .with_field(length_at.path)
+                    .with_found(format!("{} bytes of data", bytes.len()))
+                    .with_expected(format!("{length} bytes"))
+                    .with_hint("the file was cut; copy or export it again"));
+            };
+            binary.resize(usize::next_multiple_of(binary.len(), 8), 0);
+            starts.push((binary.len(), length));
+            binary.extend_from_slice(bytes);
+            if binary.len() as u64 > uri::MAX_FILE_BYTES {
+                return Err(buffer.fault("buffers of at most 1 GiB in all"));
+            }
+        }
+        let moved = self.moved_views(&starts)?;
+        if let Some(views) = self.json.get_mut("bufferViews").and_then(Value::as_array_mut) {
+            for (view, offset) in views.iter_mut().zip(moved) {
+                if let Some(offset) = offset {
+                    view["buffer"] = json!(0);
+                    view["byteOffset"] = json!(offset);
+                }
+            }
+        }
+        if let Some(buffers) = self.json.get_mut("buffers").and_then(Value::as_array_mut) {
+            buffers.truncate(1);
+            if let Some(buffer) = buffers.first_mut().and_then(Value::as_object_mut) {
+                buffer.shift_remove("uri");
+                buffer.insert("byteLength".into(), json!(binary.len()));
+            }
+        }
+        self.binary = binary;
+        self.files.extend(files);
+        Ok(())
+    }
+
+    /// Per buffer view: its new offset where it moves.
+    fn moved_views(&self, starts: &[(usize, usize)]) -> Result<Vec<Option<usize>>> {
+        let mut moved = Vec::new();
+        for view in self.root().list("bufferViews")? {
+            let buffer = view.need("buffer")?.index_into("buffers", starts.len())?;
+            let (start, length) = starts[buffer];
+            let offset = view.size_or("byteOffset", 0)?;
+            let size_at = view.need("byteLength")?;
+            if offset.checked_add(size_at.size()?).is_none_or(|end| end > length) {
+                return Err(Error::input("a buffer view reaches beyond its buffer")
+                    .with_field(size_at.path.clone())
+                    .with_found(format!("{} bytes from byte {offset}", size_at.size()?))
+                    .with_expected(format!("within the {length} bytes of buffers[{buffer}]"))
+                    .with_hint("the file was cut or written by a faulty exporter; export it again"));
+            }
+            moved.push((buffer > 0 && start != usize::MAX).then(|| start + offset));
+        }
+        Ok(moved)
+    }
+}

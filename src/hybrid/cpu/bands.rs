@@ -1,0 +1,104 @@
+//! Which strands a picture shows, and its bands of rows, whose strands fit the memory.
+
+use super::pass::{Band, Pass};
+use crate::hybrid::strands::{Knot, project};
+use crate::math::lanes::Vec3Row;
+use crate::volume::bins::{Bins, Grid, Reach};
+use rayon::prelude::*;
+
+impl Pass<'_> {
+    /// What each strand may touch; nothing where skin hides it.
+    pub(super) fn strand_reaches(&self, whole: &Grid, far_m: &[f32]) -> Vec<Reach> {
+        let Some((strands, _)) = &self.guard else { return Vec::new() };
+        let knots = || vec![Knot::default(); strands.points_per_strand];
+        (0..strands.len())
+            .into_par_iter()
+            .map_init(knots, |knots, strand| {
+                let widening = self.thinning.widening(strands, strand);
+                if widening <= 0.0 {
+                    return Reach::NOTHING;
+                }
+                project::knots(strands, strand, widening, &self.view, knots);
+                let all = project::whole_reach(&self.view, knots);
+                let nearest = knots.iter().map(|k| k.z_m).fold(f32::INFINITY, f32::min);
+                let (columns, mut rows) = whole.touched(&all);
+                let seen = rows.any(|row| columns.clone().any(|column| nearest < far_m[row * whole.columns + column]));
+                if seen { all } else { Reach::NOTHING }
+            })
+            .collect()
+    }
+
+    /// Cuts the picture into bands of whole tile rows whose strands fit the budget.
+    pub(super) fn bands(&self, whole: &Grid, reaches: &[Reach]) -> Vec<Grid> {
+        let points = self.guard.as_ref().map_or(0, |(strands, _)| strands.points_per_strand);
+        let per_strand = points * (size_of::<Knot>() + 12) + size_of::<Vec3Row>() + 8;
+        // By row: strands that start there, and how many more start than have ended above.
+        let none = || vec![(0_usize, 0_isize); whole.rows + 1];
+        let counts = reaches.par_iter().fold(none, |mut counts, reach| {
+            let rows = whole.touched(reach).1;
+            if !rows.is_empty() {
+                counts[rows.start].0 += 1;
+                counts[rows.start].1 += 1;
+                counts[rows.end].1 -= 1;
+            }
+            counts
+        });
+        let counts = counts.reduce(none, |mut all, some| {
+            for (all, some) in all.iter_mut().zip(some) {
+                *all = (all.0 + some.0, all.1 + some.1);
+            }
+            all
+        });
+        let mut bands = Vec::new();
+        let (mut first, mut held, mut running) = (0, 0_usize, 0_isize);
+        for (row, &(starting, crossing)) in counts[..whole.rows].iter().enumerate() {
+            let entered = running.max(0) as usize;
+            if row > first && (held + starting) * per_strand > self.settings.band_bytes {
+                bands.push(Grid { first_row: first, rows: row - first, ..*whole });
+                (first, held) = (row, entered);
+            }
+            held += starting;
+            running += crossing;
+            // Strands that end above the next row are no longer carried.
+            running = running.max(0);
+        }
+        bands.push(Grid { first_row: first, rows: whole.rows - first, ..*whole });
+        bands
+    }
+
+    pub(super) fn band(&self, grid: &Grid, reaches: &[Reach]) -> Band {
+        let Some((strands, shader)) = &self.guard else {
+            return Band { bins: Bins::new(grid, 0, |_| Reach::NOTHING), ..Band::default() };
+        };
+        let visible: Vec<u32> = (0..reaches.len() as u32)
+            .into_par_iter()
+            .filter(|&s| {
+                let (columns, rows) = grid.touched(&reaches[s as usize]);
+                !columns.is_empty() && !rows.is_empty()
+            })
+            .collect();
+        shader.prepare(&visible);
+        const CHUNK: usize = 512;
+        let points = strands.points_per_strand;
+        let size = visible.len() * points;
+        // Memory of zeros comes page by page to the threads that first write it.
+        let (mut knots, mut looks) = (bytemuck::zeroed_vec(size), bytemuck::zeroed_vec(visible.len()));
+        visible.par_chunks(CHUNK).zip(knots.par_chunks_mut(CHUNK * points).zip(looks.par_chunks_mut(CHUNK))).for_each(
+            |(chunk, (knots, looks))| {
+                for (&strand, knots) in chunk.iter().zip(knots.chunks_exact_mut(points)) {
+                    let widening = self.thinning.widening(strands, strand as usize);
+                    project::knots(strands, strand as usize, widening, &self.view, knots);
+                }
+                shader.strands(chunk, looks);
+            },
+        );
+        let bins = Bins::new(grid, knots.len(), |i| {
+            if i % points == points - 1 {
+                return Reach::NOTHING;
+            }
+            project::reach(&self.view, &knots[i], &knots[i + 1])
+        });
+        let ids = visible.par_iter().map(|&strand| strands.id[strand as usize]).collect();
+        Band { strands: visible, knots, looks, ids, bins }
+    }
+}

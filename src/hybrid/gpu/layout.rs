@@ -1,0 +1,239 @@
+//! Uniforms as the shaders read them; `tests/shaders.rs` compares names, offsets and sizes with the WGSL.
+
+use crate::fur::groom::fibre::Fibre;
+use crate::hybrid::Settings;
+use crate::hybrid::resolve::Blending;
+use crate::math::Vec3;
+use crate::shade::kajiya_kay::KajiyaKay;
+use crate::shade::lobes::Lobes;
+use crate::stage::projection::View;
+use crate::volume::pelt::{Layer, Lighting, Pelt};
+use bytemuck::{Pod, Zeroable};
+
+/// `Kind` of `shared/scene.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct KindUniform {
+    /// Projected hair area per skin area and height, 1/m.
+    pub area_per_m: f32,
+    /// Mean height, m.
+    pub height_m: f32,
+    /// Standard deviation of height over its mean.
+    pub variation: f32,
+    /// Height of the tallest where the length field is 1, m.
+    pub top_m: f32,
+}
+
+/// `Lobe` of `shared/scene.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct LobeUniform {
+    /// Albedo over the lobe's own integral.
+    pub albedo: f32,
+    /// Shift along the hair, rad.
+    pub shift_rad: f32,
+    /// −1 / (2σ²).
+    pub scale: f32,
+    /// Fills sixteen bytes.
+    pub unused: f32,
+}
+
+/// `Scene` of `shared/scene.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[expect(missing_docs, reason = "each field is described where the shader declares it")]
+pub struct SceneUniform {
+    pub triangle_count: u32,
+    pub layers: u32,
+    pub strand_count: u32,
+    pub points_per_strand: u32,
+    pub light_count: u32,
+    pub undercoat_light_count: u32,
+    pub face_count: u32,
+    pub inside_count: u32,
+    pub density_per_square_m: f32,
+    pub diameter_m: f32,
+    pub stretch: f32,
+    pub slope: f32,
+    pub pattern_amplitude: f32,
+    pub pattern_wavelength_m: f32,
+    pub pattern_jitter: f32,
+    pub clump_spacing_m: f32,
+    pub clump_strength: f32,
+    pub step_depth: f32,
+    pub step_layers: f32,
+    pub undercoat_albedo: f32,
+    pub undercoat_diffuse: f32,
+    pub undercoat_specular: f32,
+    pub undercoat_exponent: f32,
+    pub groups: f32,
+    pub ambient: [f32; 3],
+    pub guard_albedo: f32,
+    pub skin_factor: [f32; 3],
+    pub taper: f32,
+    pub undercoat_ramp: [[f32; 4]; 3],
+    pub guard_ramp: [[f32; 4]; 3],
+    pub guard_kind: KindUniform,
+    pub undercoat_kind: KindUniform,
+    pub tip_transparency: f32,
+    pub tip_exponent: f32,
+    pub tt_azimuth_scale: f32,
+    pub tt_norm: f32,
+    pub glint: f32,
+    pub glint_angle_rad: f32,
+    pub glint_scale: f32,
+    pub glint_norm: f32,
+    pub surround_norm: f32,
+    pub guard_diffuse: f32,
+    pub attenuation_per_m: f32,
+    pub opaque: f32,
+    pub lobes: [LobeUniform; 3],
+}
+
+impl SceneUniform {
+    /// Light and hair of a pelt; counts, and what only undercoat has, are left to be filled in.
+    pub fn new(pelt: &Pelt<'_>, lobes: &Lobes<f32>, lighting: &Lighting, settings: &Settings) -> Self {
+        let hair = &pelt.hair;
+        let scatter = KajiyaKay::<f32>::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent);
+        let guard = pelt.guard;
+        let [undercoat_diffuse, undercoat_specular, undercoat_exponent] = scatter.coefficients();
+        let (groups, attenuation_per_m) = match settings.blending {
+            Blending::Virtual { fragments } => (fragments.clamp(1, 64) as f32, 0.0),
+            Blending::Simplified { attenuation_per_m } => (1.0, attenuation_per_m),
+        };
+        let kind = |fibre: &Fibre| {
+            let layer = Layer::new(fibre, 1.0, 1.0);
+            KindUniform {
+                area_per_m: layer.area_per_m,
+                height_m: layer.height_m,
+                variation: layer.spread_m / layer.height_m.max(f32::MIN_POSITIVE),
+                top_m: fibre.height_m(),
+            }
+        };
+        let ramp = |ramp: [Vec3; 3]| ramp.map(|c| c.extend(0.0).to_array());
+        let lights = 1 + lighting.fill.len() as u32;
+        let profile = guard.map(|(strands, _)| strands.profile);
+        Self {
+            triangle_count: pelt.skin.triangles.len() as u32,
+            layers: settings.resolution.layers.max(1),
+            strand_count: guard.map_or(0, |(strands, _)| strands.len() as u32),
+            points_per_strand: guard.map_or(2, |(strands, _)| strands.points_per_strand as u32),
+            light_count: lights,
+            undercoat_light_count: if lighting.fill_on_undercoat { lights } else { 1 },
+            step_depth: settings.stepping.depth,
+            step_layers: settings.stepping.layers,
+            undercoat_albedo: hair.undercoat_diffuse as f32,
+            undercoat_diffuse,
+            undercoat_specular,
+            undercoat_exponent,
+            groups,
+            ambient: lighting.ambient.to_array(),
+            guard_albedo: (hair.guard.tt.albedo + hair.guard.trt.albedo + hair.guard.diffuse) as f32,
+            skin_factor: pelt.skin_factor.to_array(),
+            taper: profile.map_or(1.0, |p| p.taper),
+            undercoat_ramp: ramp(pelt.undercoat.map_or([Vec3::ONE; 3], |fibre| fibre.profile.ramp)),
+            guard_ramp: ramp(profile.map_or([Vec3::ONE; 3], |p| p.ramp)),
+            guard_kind: guard.map_or(KindUniform::default(), |(_, fibre)| kind(fibre)),
+            undercoat_kind: pelt.undercoat.map_or(KindUniform::default(), kind),
+            tip_transparency: profile.map_or(0.0, |p| p.tip_transparency),
+            tip_exponent: profile.map_or(1.0, |p| p.tip_exponent),
+            tt_azimuth_scale: lobes.tt_azimuth_scale,
+            tt_norm: lobes.tt_norm,
+            glint: lobes.glint,
+            glint_angle_rad: lobes.glint_angle_rad,
+            glint_scale: lobes.glint_scale,
+            glint_norm: lobes.glint_norm,
+            surround_norm: lobes.surround_norm,
+            guard_diffuse: lobes.diffuse,
+            attenuation_per_m,
+            opaque: settings.opaque,
+            lobes: lobes.lobes.map(|lobe| LobeUniform {
+                albedo: lobe.albedo,
+                shift_rad: lobe.shift_rad,
+                scale: lobe.scale,
+                unused: 0.0,
+            }),
+            ..Self::default()
+        }
+    }
+}
+
+/// `View` of `shared/camera.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct ViewUniform {
+    /// Position, m.
+    pub eye_m: [f32; 3],
+    /// Distance of the picture's plane, px.
+    pub focal_px: f32,
+    /// Unit vector.
+    pub right: [f32; 3],
+    /// Smallest depth that is drawn, m.
+    pub near_m: f32,
+    /// Unit vector.
+    pub up: [f32; 3],
+    /// Room for fragments.
+    pub most_fragments: u32,
+    /// Unit vector.
+    pub forward: [f32; 3],
+    /// Room for starts.
+    pub most_starts: u32,
+    /// Where the optical axis meets the picture, px.
+    pub centre_px: [f32; 2],
+    /// Of the whole picture.
+    pub size: [u32; 2],
+    /// First row of the band and the one past its last.
+    pub rows: [u32; 2],
+    /// Room for stretches.
+    pub most_stretches: u32,
+    /// Nothing.
+    pub padding: u32,
+}
+
+impl ViewUniform {
+    /// Of a view and a band of its rows; room for nothing.
+    pub fn new(view: &View, rows: [u32; 2]) -> Self {
+        let [right, up, forward] = view.axes.map(|axis| axis.to_array());
+        Self {
+            eye_m: view.eye_m.to_array(),
+            focal_px: view.focal_px,
+            right,
+            near_m: view.near_m,
+            up,
+            most_fragments: 0,
+            forward,
+            most_starts: 0,
+            centre_px: view.centre_px.to_array(),
+            size: view.size.map(|n| n as u32),
+            rows,
+            most_stretches: 0,
+            padding: 0,
+        }
+    }
+}
+
+/// What a band came to, in the order of the indices in `shared/camera.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct Totals {
+    /// Places where rays enter the shell.
+    pub starts: u32,
+    /// Fragments of guard hair.
+    pub fragments: u32,
+    /// Stretches of undercoat.
+    pub stretches: u32,
+    /// Steps through undercoat.
+    pub steps: u32,
+    /// Not 0 where a list was too short.
+    pub overflow: u32,
+}
+
+/// `Blocks` of `shared/blocks.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct BlocksUniform {
+    /// Columns in all blocks.
+    pub columns: u32,
+    /// Blocks.
+    pub count: u32,
+}

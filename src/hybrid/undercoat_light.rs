@@ -1,0 +1,80 @@
+//! What undercoat sends to the eye.
+
+use crate::data::light::Directional;
+use crate::math::Vec3;
+use crate::math::lanes::{F32s, Isa, Vec3s};
+use crate::shade::kajiya_kay::KajiyaKay;
+use crate::shade::{Angles, shadow_power};
+use crate::volume::march::Steps;
+use crate::volume::march::content::Content;
+use crate::volume::pelt::{Lighting, Pelt, ramps, sky_depths, slant_depths, terminators, through};
+use crate::volume::shell::prisms::Prisms;
+
+/// Shades undercoat. Holds what does not change from step to step.
+#[derive(Debug)]
+pub struct UndercoatShader<'a> {
+    lighting: &'a Lighting,
+    scatter: KajiyaKay<f32>,
+    albedo_share: f32,
+    ramp: [Vec3; 3],
+}
+
+impl<'a> UndercoatShader<'a> {
+    /// For a pelt's undercoat.
+    pub fn new(pelt: &Pelt<'_>, lighting: &'a Lighting) -> Self {
+        let hair = &pelt.hair;
+        Self {
+            lighting,
+            scatter: KajiyaKay::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent),
+            albedo_share: hair.undercoat_diffuse as f32,
+            ramp: pelt.undercoat.map_or([Vec3::ONE; 3], |fibre| fibre.profile.ramp),
+        }
+    }
+
+    /// Colours of the hair at steps and the radiance they send back along the rays. `shadow` holds the key light's
+    /// optical depth.
+    #[inline(always)]
+    pub fn look<I: Isa>(
+        &self,
+        content: &Content<'_>,
+        prisms: &Prisms,
+        steps: &Steps<I>,
+        shadow: F32s<I>,
+    ) -> (Vec3s<I>, Vec3s<I>) {
+        let albedo = prisms.tint(steps.b).times(ramps(&self.ramp, steps.t));
+        let share = albedo * F32s::splat(self.albedo_share);
+        let power = Vec3s::new(shadow_power(share.x), shadow_power(share.y), shadow_power(share.z));
+        let above = content.above(prisms, steps);
+        let normal = prisms.normal(steps.b);
+        let mut radiance = share.times(Vec3s::splat(self.lighting.ambient)).times(through(power, sky_depths(above)));
+        let spot = Spot { albedo, power, normal, hair: steps.hair, to_eye: steps.direction * F32s::splat(-1.0) };
+        radiance = radiance + self.lit(&spot, &self.lighting.key, shadow);
+        if self.lighting.fill_on_undercoat {
+            for light in &self.lighting.fill {
+                let depth = slant_depths(above, Vec3s::splat(light.to_light), normal, steps.hair);
+                radiance = radiance + self.lit(&spot, light, depth);
+            }
+        }
+        (albedo, radiance)
+    }
+
+    /// What a light gives through an optical depth.
+    #[inline(always)]
+    fn lit<I: Isa>(&self, spot: &Spot<I>, light: &Directional, depth: F32s<I>) -> Vec3s<I> {
+        let to_light = Vec3s::splat(light.to_light);
+        let open = terminators(to_light, spot.normal);
+        let angles = Angles::of_lanes(spot.hair, to_light, spot.to_eye);
+        let (tinted, plain) = self.scatter.map(F32s::splat).scatter(angles);
+        let irradiance = Vec3s::splat(light.irradiance) * (angles.cos_in() * open);
+        (spot.albedo * tinted).plus(plain).times(through(spot.power, depth)).times(irradiance)
+    }
+}
+
+/// Undercoat to be lit.
+struct Spot<I: Isa> {
+    albedo: Vec3s<I>,
+    power: Vec3s<I>,
+    normal: Vec3s<I>,
+    hair: Vec3s<I>,
+    to_eye: Vec3s<I>,
+}

@@ -1,0 +1,287 @@
+//! What a point of hair or skin sends to the eye, in f64: the formulas of `crate::shade` and `crate::volume::pelt`, with the
+//! key light's optical depth integrated anew for every point.
+
+use super::bvh::Ray;
+use super::guard::Guard;
+use super::medium::{Counted, Medium};
+use super::point::ShellPoint;
+use super::skin::Skin;
+use super::trace::Tracer;
+use crate::data::strands::Strands;
+use crate::error::Result;
+use crate::math::{DVec3, Vec3};
+use crate::shade::kajiya_kay::KajiyaKay;
+use crate::shade::lobes::Lobes;
+use crate::shade::{Angles, shadow_power};
+use crate::volume::pelt::{Layer, Lighting, Pelt, sky_depth, slant_depth, terminator};
+use std::f64::consts::FRAC_1_PI;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// Optical depth beyond which no light is left.
+const DARK: f64 = 12.0;
+
+/// Heights of a piece of guard hair from which its shadow is followed.
+const HEIGHTS_PER_PIECE: usize = 3;
+
+fn heights_of(strands: &Strands) -> usize {
+    (strands.points_per_strand - 1) * HEIGHTS_PER_PIECE + 1
+}
+
+/// What a point looks like.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Look {
+    /// Radiance, linear RGB.
+    pub radiance: DVec3,
+    /// Diffuse colour.
+    pub albedo: DVec3,
+    /// Direction of the hair, or zero.
+    pub tangent: DVec3,
+    /// Normal of the skin, or zero.
+    pub normal: DVec3,
+}
+
+/// What stands around a shaded point.
+struct Site {
+    normal: DVec3,
+    lean: DVec3,
+    /// Hair area above per skin area.
+    above: f32,
+    /// Optical depth towards the key light.
+    key_depth: f64,
+}
+
+/// Shades what rays find.
+pub struct Shader<'a> {
+    pelt: &'a Pelt<'a>,
+    lighting: &'a Lighting,
+    medium: Option<&'a Medium<'a>>,
+    guard: Option<&'a Guard<'a>>,
+    /// Optical depths towards the key light at heights of guard hairs, as bits of f32; NaN where not asked for yet.
+    shadows: Vec<AtomicU32>,
+    skin: &'a Skin,
+    lobes: Lobes<f64>,
+    undercoat: KajiyaKay<f64>,
+    normals: &'a [Vec3],
+}
+
+impl<'a> Shader<'a> {
+    /// For a pelt.
+    ///
+    /// # Errors
+    /// As [`Lobes::new`].
+    pub fn new(pelt: &'a Pelt<'a>, lighting: &'a Lighting, tracer: &Tracer<'a>, normals: &'a [Vec3]) -> Result<Self> {
+        let hair = &pelt.hair;
+        let Tracer { skin, guard, medium } = *tracer;
+        let heights = guard.map_or(0, |guard| guard.strands().len() * heights_of(guard.strands()));
+        Ok(Self {
+            pelt,
+            lighting,
+            medium,
+            skin,
+            guard,
+            shadows: std::iter::repeat_with(|| AtomicU32::new(f32::NAN.to_bits())).take(heights).collect(),
+            lobes: Lobes::new(&hair.guard)?,
+            undercoat: KajiyaKay::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent),
+            normals,
+        })
+    }
+
+    /// Undercoat at a place, seen along `direction`.
+    pub fn undercoat(&self, place: &ShellPoint, direction: DVec3) -> Look {
+        let Some(medium) = self.medium else { return Look::default() };
+        let fields = self.pelt.fields;
+        let ramp = self.pelt.undercoat.map_or(Vec3::ONE, |fibre| fibre.profile.ramp_at(place.t as f32));
+        let albedo = medium.vector(&fields.tint, place) * ramp.as_dvec3();
+        let hair = medium.hair(place);
+        let height_m = place.t * self.height_m(place);
+        let site = self.site(place, height_m, hair, self.key_depth(place));
+        let diffuse = albedo * self.pelt.hair.undercoat_diffuse;
+        let scattered = |angles: Angles<f64>| {
+            let (tinted, plain) = self.undercoat.scatter(angles);
+            albedo * tinted + plain
+        };
+        let fill = self.lighting.fill_on_undercoat;
+        let radiance = self.hair(&site, diffuse, hair, -direction, fill, scattered);
+        Look { radiance, albedo, tangent: hair, normal: DVec3::ZERO }
+    }
+
+    /// A guard hair at a place along it, in its points.
+    pub fn guard(&self, strand: u32, knot: f64, direction: DVec3) -> Look {
+        let Some(guard) = self.guard else { return Look::default() };
+        let strands = guard.strands();
+        let foot = self.foot(strand);
+        let points = strands.points_of_m(strand as usize);
+        let last = points.len() - 1;
+        let piece = (knot as usize).min(last - 1);
+        let along = knot - piece as f64;
+        let point = |i: usize| points[i.min(last)].as_dvec3();
+        let lean = self.lean(&foot);
+        // The hair's direction turns evenly from point to point.
+        let at_knot = |i: usize| (point(i + 1) - point(i.saturating_sub(1))).normalize_or(lean);
+        let tangent = at_knot(piece).lerp(at_knot(piece + 1), along).normalize_or(lean);
+        let height_m = self.height_over(&foot, lean, strand, knot);
+        let site = self.site(&foot, height_m, lean, self.hair_depth(strand, knot));
+        let albedo =
+            strands.tint[strand as usize].as_dvec3() * strands.profile.ramp_at(guard.s(knot) as f32).as_dvec3();
+        let p = &self.pelt.hair.guard;
+        let share = albedo * (p.tt.albedo + p.trt.albedo + p.diffuse);
+        let scattered = |angles: Angles<f64>| {
+            let s = self.lobes.scatter(angles);
+            DVec3::splat(s.plain) + albedo * s.once + albedo * albedo * s.twice
+        };
+        let radiance = self.hair(&site, share, tangent, -direction, true, scattered);
+        Look { radiance, albedo, tangent, normal: DVec3::ZERO }
+    }
+
+    /// Skin at a place, seen along `direction`.
+    pub fn skin(&self, place: &ShellPoint, direction: DVec3) -> Look {
+        let outside = self.normal(place);
+        let back = direction.dot(outside) > 0.0;
+        let normal = if back { -outside } else { outside };
+        let lean = self.lean(place);
+        let albedo = self.vector(&self.pelt.fields.tint, place) * self.pelt.skin_factor.as_dvec3();
+        // The back of a pelt is bare.
+        let site = if back {
+            Site { normal, lean, above: 0.0, key_depth: 0.0 }
+        } else {
+            self.site(place, 0.0, lean, self.key_depth(place))
+        };
+        let mut radiance = self.lighting.ambient.as_dvec3() * albedo * libm::exp(-f64::from(sky_depth(site.above)));
+        for (i, light) in std::iter::once(&self.lighting.key).chain(&self.lighting.fill).enumerate() {
+            let cosine = light.to_light.as_dvec3().dot(normal);
+            if cosine > 0.0 {
+                let open = f64::from(terminator(light.to_light, normal.as_vec3()));
+                let lit = FRAC_1_PI * cosine * open * libm::exp(-self.depth(i, light.to_light, &site));
+                radiance += light.irradiance.as_dvec3() * albedo * lit;
+            }
+        }
+        Look { radiance, albedo, tangent: DVec3::ZERO, normal }
+    }
+
+    /// Ambient light and all lights on hair of direction `hair`.
+    fn hair(
+        &self,
+        site: &Site,
+        share: DVec3,
+        hair: DVec3,
+        to_eye: DVec3,
+        fill: bool,
+        scattered: impl Fn(Angles<f64>) -> DVec3,
+    ) -> DVec3 {
+        let power = DVec3::new(shadow_power(share.x), shadow_power(share.y), shadow_power(share.z));
+        let through = |depth: f64| (power * -depth).map(libm::exp);
+        let mut sum = self.lighting.ambient.as_dvec3() * share * through(f64::from(sky_depth(site.above)));
+        let lights = std::iter::once(&self.lighting.key).chain(self.lighting.fill.iter().filter(|_| fill));
+        for (i, light) in lights.enumerate() {
+            let open = f64::from(terminator(light.to_light, site.normal.as_vec3()));
+            if open <= 0.0 {
+                continue;
+            }
+            let to_light = light.to_light.as_dvec3().normalize();
+            let angles = Angles::of_dvectors(hair, to_light, to_eye);
+            let depth = self.depth(i, light.to_light, site);
+            sum += light.irradiance.as_dvec3() * scattered(angles) * through(depth) * (angles.cos_in() * open);
+        }
+        sum
+    }
+
+    /// Optical depth towards light `i`: the key's, followed through the hair, or that of a flat layer.
+    fn depth(&self, i: usize, to_light: Vec3, site: &Site) -> f64 {
+        if i == 0 {
+            return site.key_depth;
+        }
+        f64::from(slant_depth(site.above, to_light, site.normal.as_vec3(), site.lean.as_vec3()))
+    }
+
+    /// What stands around hair over a place, `height_m` above the skin.
+    fn site(&self, place: &ShellPoint, height_m: f64, lean: DVec3, key_depth: f64) -> Site {
+        let fields = self.pelt.fields;
+        let (density, length) = (self.scalar(&fields.density, place) as f32, self.scalar(&fields.length, place) as f32);
+        let above = |fibre| Layer::new(fibre, density, length).above(height_m as f32);
+        let own = self.pelt.undercoat.map_or(0.0, above);
+        let guard = self.pelt.guard.map_or(0.0, |(_, fibre)| above(fibre));
+        Site { normal: self.normal(place), lean, above: own + guard, key_depth }
+    }
+
+    /// Optical depth of hair between a place and the key light, up to the first skin.
+    fn key_depth(&self, place: &ShellPoint) -> f64 {
+        let to_light = self.lighting.key.to_light;
+        let lit = terminator(to_light, self.normal(place).as_vec3()) > 0.0;
+        let Some(medium) = self.medium.filter(|_| lit) else { return 0.0 };
+        let from_m = 1e-7 * self.height_m(place);
+        let ray = Ray::new(medium.slabs.position_m(place), to_light.as_dvec3().normalize());
+        let to_m = self.skin.meet(&ray, from_m).map_or(f64::INFINITY, |(at_m, _)| at_m);
+        medium.depth_along(&ray, from_m, to_m, Counted::Both, DARK)
+    }
+
+    /// The same for a guard hair, which is shadowed as the column over its own root is: a cubic through four heights of it.
+    fn hair_depth(&self, strand: u32, knot: f64) -> f64 {
+        let Some(guard) = self.guard else { return 0.0 };
+        let heights = heights_of(guard.strands());
+        let at = knot * HEIGHTS_PER_PIECE as f64;
+        let first = (at as usize).saturating_sub(1).min(heights - 4);
+        let x = at - first as f64;
+        let depth = |i: usize| {
+            let cell = &self.shadows[strand as usize * heights + first + i];
+            let known = f32::from_bits(cell.load(Ordering::Relaxed));
+            if !known.is_nan() {
+                return f64::from(known);
+            }
+            let foot = self.foot(strand);
+            let knot = (first + i) as f64 / HEIGHTS_PER_PIECE as f64;
+            let height_m = self.height_over(&foot, self.lean(&foot), strand, knot);
+            let t = (height_m / self.height_m(&foot)).max(0.0);
+            // Whoever comes first finds the same.
+            let found = self.key_depth(&ShellPoint { t, ..foot }) as f32;
+            cell.store(found.to_bits(), Ordering::Relaxed);
+            f64::from(found)
+        };
+        let weights = [
+            -(x - 1.0) * (x - 2.0) * (x - 3.0) / 6.0,
+            x * (x - 2.0) * (x - 3.0) / 2.0,
+            -x * (x - 1.0) * (x - 3.0) / 2.0,
+            x * (x - 1.0) * (x - 2.0) / 6.0,
+        ];
+        (0..4).map(|i| weights[i] * depth(i)).sum::<f64>().max(0.0)
+    }
+
+    /// Where a guard hair grows.
+    fn foot(&self, strand: u32) -> ShellPoint {
+        let root = self.guard.map_or_else(Default::default, |guard| guard.strands().roots[strand as usize]);
+        let [u, v] = root.barycentric.map(f64::from);
+        ShellPoint { triangle: root.triangle, b: DVec3::new(u, v, 1.0 - u - v), t: 0.0 }
+    }
+
+    /// Height of a guard hair over its foot at a place along it, m along the lean.
+    fn height_over(&self, foot: &ShellPoint, lean: DVec3, strand: u32, knot: f64) -> f64 {
+        let Some(guard) = self.guard else { return 0.0 };
+        let points = guard.strands().points_of_m(strand as usize);
+        let piece = (knot as usize).min(points.len() - 2);
+        let at = points[piece].as_dvec3().lerp(points[piece + 1].as_dvec3(), knot - piece as f64);
+        let normal = self.normal(foot);
+        (at - points[0].as_dvec3()).dot(normal) / lean.dot(normal).max(0.05)
+    }
+
+    fn lean(&self, place: &ShellPoint) -> DVec3 {
+        self.vector(&self.pelt.fields.lean, place).normalize_or(self.normal(place))
+    }
+
+    /// Height of the shell at a place, m along the lean.
+    fn height_m(&self, place: &ShellPoint) -> f64 {
+        self.medium.map_or(1.0, |medium| medium.slabs.up_m(place).length())
+    }
+
+    fn normal(&self, place: &ShellPoint) -> DVec3 {
+        self.vector(self.normals, place).normalize_or(DVec3::Y)
+    }
+
+    fn scalar(&self, values: &[f32], place: &ShellPoint) -> f64 {
+        let v = self.pelt.skin.triangles[place.triangle as usize].map(|v| f64::from(values[v as usize]));
+        v[0] * place.b.x + v[1] * place.b.y + v[2] * place.b.z
+    }
+
+    fn vector(&self, values: &[Vec3], place: &ShellPoint) -> DVec3 {
+        let v = self.pelt.skin.triangles[place.triangle as usize].map(|v| values[v as usize].as_dvec3());
+        v[0] * place.b.x + v[1] * place.b.y + v[2] * place.b.z
+    }
+}

@@ -1,0 +1,85 @@
+//! Optical depth of undercoat along rays.
+
+use super::volume::Volume;
+use super::{Journey, Start, Stepping, Steps, Traveller};
+use crate::math::Vec3;
+use crate::math::lanes::{self, F32s, Isa, MOST, Mask, Row};
+use crate::volume::shell::prisms::Prisms;
+
+impl Volume<'_> {
+    /// Optical depths along rays, each up to `enough`, and the time spent on filling densities, ns. Steps lengthen by `haste`
+    /// for each optical depth passed.
+    pub fn depths_along(&self, journeys: &[Journey], stepping: &Stepping, haste: f32, enough: f32) -> (Vec<f32>, u64) {
+        lanes::run(Measure { volume: self, journeys, stepping, haste, enough })
+    }
+
+    /// Optical depth along one ray.
+    pub fn depth_along(&self, origin_m: Vec3, direction: Vec3, start: Start, stepping: &Stepping, enough: f32) -> f32 {
+        let journey = Journey { origin_m, direction, start, far_m: f32::INFINITY };
+        self.depths_along(&[journey], stepping, 0.0, enough).0[0]
+    }
+}
+
+/// Follows rays for their optical depth.
+struct Measure<'v, 'a, 'j> {
+    volume: &'v Volume<'a>,
+    journeys: &'j [Journey],
+    stepping: &'j Stepping,
+    haste: f32,
+    enough: f32,
+}
+
+impl lanes::Work for Measure<'_, '_, '_> {
+    type Output = (Vec<f32>, u64);
+
+    #[inline(always)]
+    fn run<I: Isa>(self) -> (Vec<f32>, u64) {
+        let Self { volume, journeys, stepping, haste, enough } = self;
+        let found = vec![0.0; journeys.len()];
+        let mut depths = Depths { journeys, next: 0, index: [0; MOST], sum: Row::default(), haste, enough, found };
+        let filling_ns = super::march::<I, _>(volume, stepping, &mut depths);
+        (depths.found, filling_ns)
+    }
+}
+
+/// How much deeper a ray's last steps may be than its first; as in `hybrid/shadow.wgsl`.
+const MOST_PATIENCE: f32 = 4.0;
+
+/// Sums optical depth.
+struct Depths<'j> {
+    journeys: &'j [Journey],
+    next: usize,
+    index: [usize; MOST],
+    sum: Row,
+    haste: f32,
+    enough: f32,
+    found: Vec<f32>,
+}
+
+impl<I: Isa> Traveller<I> for Depths<'_> {
+    #[inline(always)]
+    fn next(&mut self, lane: usize) -> Option<Journey> {
+        let journey = *self.journeys.get(self.next)?;
+        self.index[lane] = self.next;
+        self.sum.0[lane] = 0.0;
+        self.next += 1;
+        Some(journey)
+    }
+
+    #[inline(always)]
+    fn patience(&self) -> F32s<I> {
+        (F32s::of(&self.sum) * self.haste + 1.0).min(F32s::splat(MOST_PATIENCE))
+    }
+
+    #[inline(always)]
+    fn visit(&mut self, _: &Prisms, steps: &Steps<I>, on: Mask<I>) -> Mask<I> {
+        let sum = F32s::of(&self.sum) + on.keep(steps.depth);
+        self.sum = sum.row();
+        sum.lt(F32s::splat(self.enough))
+    }
+
+    #[inline(always)]
+    fn end(&mut self, lane: usize) {
+        self.found[self.index[lane]] = self.sum.0[lane];
+    }
+}

@@ -1,0 +1,172 @@
+//! What a picture shows: skin with its hair, and how much hair lies over a point of it.
+
+use crate::data::fields::Fields;
+use crate::data::light::Directional;
+use crate::data::mesh::Mesh;
+use crate::data::strands::Strands;
+use crate::fur::groom::fibre::Fibre;
+use crate::math::Vec3;
+use crate::math::lanes::{F32s, Isa, Vec3s};
+use crate::shade::lobes::LobeParameters;
+
+/// Skin and hair of a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Pelt<'a> {
+    /// The skin.
+    pub skin: &'a Mesh,
+    /// What varies over it.
+    pub fields: &'a Fields,
+    /// Factor on the fields' tint for the skin under the hair.
+    pub skin_factor: Vec3,
+    /// Guard hairs as grown, and what they were grown from.
+    pub guard: Option<(&'a Strands, &'a Fibre)>,
+    /// Undercoat, as a volume.
+    pub undercoat: Option<&'a Fibre>,
+    /// How hairs scatter.
+    pub hair: Hair,
+}
+
+/// How both kinds of hair scatter light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hair {
+    /// Guard hair.
+    pub guard: LobeParameters,
+    /// Diffuse albedo of undercoat, times its colour.
+    pub undercoat_diffuse: f64,
+    /// Albedo of undercoat's highlight.
+    pub undercoat_specular: f64,
+    /// Exponent of undercoat's highlight.
+    pub undercoat_exponent: f64,
+}
+
+impl Default for Hair {
+    fn default() -> Self {
+        Self {
+            guard: LobeParameters::default(),
+            undercoat_diffuse: 0.9,
+            undercoat_specular: 0.05,
+            undercoat_exponent: 8.0,
+        }
+    }
+}
+
+/// The lights of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lighting {
+    /// The light whose shadow is followed through the undercoat.
+    pub key: Directional,
+    /// Further lights, shadowed by the hair right above each point; the environment's, as a rule.
+    pub fill: Vec<Directional>,
+    /// Radiance from everywhere, linear RGB.
+    pub ambient: Vec3,
+    /// Whether the further lights fall on undercoat too (Andersen et al. 2016 §5 leave them out).
+    pub fill_on_undercoat: bool,
+}
+
+/// One kind of hair as a layer over flat skin: what shadows without a volume are made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layer {
+    /// Projected hair area per skin area and height, 1/m: density × mean diameter × length along the hair over height.
+    pub area_per_m: f32,
+    /// Mean height, m, along the lean.
+    pub height_m: f32,
+    /// Standard deviation of height, m.
+    pub spread_m: f32,
+}
+
+impl Layer {
+    /// Of hair where the fields say `density` and `length`.
+    pub fn new(fibre: &Fibre, density: f32, length: f32) -> Self {
+        let longest = fibre.longest_m().max(f32::MIN_POSITIVE);
+        let rise = fibre.height_m() / longest;
+        let height_m = fibre.length_m * rise * length;
+        let mean_diameter_m = fibre.radius_m * (1.0 + fibre.profile.taper);
+        Self {
+            area_per_m: fibre.density_per_m2 * density * mean_diameter_m / rise.max(1e-3),
+            height_m,
+            spread_m: height_m * fibre.shape.length_variation,
+        }
+    }
+
+    /// Hair area above `height_m` per skin area: ∫ of the share of hairs that reach so far, times `area_per_m`.
+    ///
+    /// For heights of normal distribution this is σ φ(z) + (H − h) Φ(z), z = (H − h)/σ.
+    pub fn above(&self, height_m: f32) -> f32 {
+        let left = self.height_m - height_m;
+        if self.spread_m < 1e-9 {
+            return self.area_per_m * left.max(0.0);
+        }
+        let z = left / self.spread_m;
+        if z > 5.0 {
+            return self.area_per_m * left;
+        }
+        let density = 0.398_942_3 * libm::expf(-0.5 * z * z);
+        let share = 0.5 * (1.0 + libm::erff(z * std::f32::consts::FRAC_1_SQRT_2));
+        self.area_per_m * (self.spread_m * density + left * share).max(0.0)
+    }
+}
+
+/// Optical depth from hair area `above` per skin area towards `to_light`, hair along `lean`: a flat layer crossed on a
+/// slant. Lights below the horizon count as on it; what the body hides is [`terminator`]'s part.
+pub fn slant_depth(above: f32, to_light: Vec3, normal: Vec3, lean: Vec3) -> f32 {
+    let along = to_light.dot(lean);
+    (above * (1.0 - along * along).max(0.0).sqrt() / to_light.dot(normal).max(HORIZON)).min(DEEPEST)
+}
+
+/// Greatest optical depth of a flat layer: hair deeper than this is hidden as well as it is dark; where it is seen all the
+/// same, at a border or in a parting, light finds the way that the eye found.
+pub const DEEPEST: f32 = 2.5;
+
+/// [`slant_depth`] in lanes.
+#[inline(always)]
+pub fn slant_depths<I: Isa>(above: F32s<I>, to_light: Vec3s<I>, normal: Vec3s<I>, lean: Vec3s<I>) -> F32s<I> {
+    let along = to_light.dot(lean);
+    let sine = (F32s::splat(1.0) - along * along).max(F32s::splat(0.0)).sqrt();
+    (above * sine / to_light.dot(normal).max(F32s::splat(HORIZON))).min(F32s::splat(DEEPEST))
+}
+
+/// [`terminator`] in lanes.
+#[inline(always)]
+pub fn terminators<I: Isa>(to_light: Vec3s<I>, normal: Vec3s<I>) -> F32s<I> {
+    let x = ((to_light.dot(normal) + 0.35) * (1.0 / 0.35)).within(0.0, 1.0);
+    x * x * (F32s::splat(3.0) - x * 2.0)
+}
+
+/// Transmittance per channel: optical depth times the power that the hair's colour gives ([`crate::shade::shadow_power`]).
+#[inline(always)]
+pub fn through<I: Isa>(power: Vec3s<I>, depth: F32s<I>) -> Vec3s<I> {
+    let depth = -depth;
+    Vec3s::new((power.x * depth).exp_negative(), (power.y * depth).exp_negative(), (power.z * depth).exp_negative())
+}
+
+/// Colours at root, middle and tip, linear in between, where s ∈ [0, 1] goes along the hair.
+#[inline(always)]
+pub fn ramps<I: Isa>(ramp: &[Vec3; 3], s: F32s<I>) -> Vec3s<I> {
+    let [root, middle, tip] = [Vec3s::splat(ramp[0]), Vec3s::splat(ramp[1]), Vec3s::splat(ramp[2])];
+    let (one, twice) = (F32s::splat(1.0), s * 2.0);
+    let lower = root + (middle - root) * twice;
+    let upper = middle + (tip - middle) * (twice - one);
+    lower.select(twice.lt(one), upper)
+}
+
+/// [`sky_depth`] in lanes.
+#[inline(always)]
+pub fn sky_depths<I: Isa>(above: F32s<I>) -> F32s<I> {
+    (above * (1.5 * std::f32::consts::FRAC_PI_4)).min(F32s::splat(DEEPEST))
+}
+
+/// Least cosine between normal and light for which hair shadows as a flat layer.
+const HORIZON: f32 = 0.08;
+
+/// Share of a light that the body itself lets pass to hair above skin with this normal: hair stands out of the skin's
+/// shadow a little past the horizon.
+pub fn terminator(to_light: Vec3, normal: Vec3) -> f32 {
+    let x = ((to_light.dot(normal) + 0.35) / 0.35).clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}
+
+/// Optical depth towards the whole sky under hair area `above`: exp(−1.5 τ) stands in for the mean of exp(−τ/cos θ) over
+/// the hemisphere (2 E₃(τ), within 0.05), with the mean sine π/4 between hair and light.
+pub fn sky_depth(above: f32) -> f32 {
+    (1.5 * std::f32::consts::FRAC_PI_4 * above).min(DEEPEST)
+}
