@@ -8,9 +8,9 @@
     reason = "a bench that cannot go on stops, and prints what it found"
 )]
 
-#[path = "../tests/pelts.rs"]
+#[path = "../tests/scenes.rs"]
 #[allow(dead_code, reason = "tests use the rest")]
-mod pelts;
+mod scenes;
 
 use furrier::cast::bvh::Bvh;
 use furrier::fur::undercoat::Undercoat;
@@ -21,7 +21,7 @@ use furrier::volume::march::volume::Volume;
 use furrier::volume::march::{Journey, Start, Stepping};
 use furrier::volume::shell::prism::{Place, Prism};
 use furrier::volume::shell::subelement;
-use pelts::Grown;
+use scenes::Grown;
 
 fn main() {
     let (march, bvh) = (Rays::new(3), Hierarchy::new(3));
@@ -34,15 +34,15 @@ fn main() {
 const LAYERS: u32 = 16;
 const RAYS: usize = 2048;
 
-/// A bent pelt of 24 triangles: at d = 6 it has 1,572,864 sub-elements.
-fn pelt() -> &'static Grown {
-    static PELT: std::sync::OnceLock<Grown> = std::sync::OnceLock::new();
-    PELT.get_or_init(|| {
-        let mesh = pelts::grid(4, 3, |u, v| {
+/// A bent scene of 24 triangles: at d = 6 it has 1,572,864 sub-elements.
+fn scene() -> &'static Grown {
+    static SCENE: std::sync::OnceLock<Grown> = std::sync::OnceLock::new();
+    SCENE.get_or_init(|| {
+        let mesh = scenes::grid(4, 3, |u, v| {
             let angle = std::f32::consts::PI * (0.25 + 0.5 * v);
             Vec3::new((u - 0.5) * 0.15, 0.04 * angle.sin(), 0.04 * angle.cos())
         });
-        let (guard, mut undercoat) = pelts::mink();
+        let (guard, mut undercoat) = scenes::mink();
         undercoat.density_per_cm2 = 2000.0;
         Grown::new(mesh, &guard, &undercoat, Vec3::X, 35.0, 3)
     })
@@ -50,12 +50,12 @@ fn pelt() -> &'static Grown {
 
 fn volume(d: u8) -> Volume<'static> {
     static NORMALS: std::sync::OnceLock<Vec<Vec3>> = std::sync::OnceLock::new();
-    let grown = pelt();
+    let grown = scene();
     let normals = NORMALS.get_or_init(|| grown.mesh.smooth_normals());
     static CONTENT: std::sync::OnceLock<Content<'static>> = std::sync::OnceLock::new();
     let content = CONTENT.get_or_init(|| {
         let resolution = Resolution { layers: LAYERS, pattern: None, ..Resolution::default() };
-        Content::new(&grown.pelt(), normals, resolution).expect("a scene has undercoat")
+        Content::new(&grown.scene(), normals, resolution).expect("a scene has undercoat")
     });
     Volume::new(content, vec![d; grown.mesh.triangles.len()])
 }
@@ -252,12 +252,12 @@ fn rays_through_a_hierarchy(bencher: divan::Bencher, d: u8) {
 }
 
 fn picture(bencher: divan::Bencher, guard_per_cm2: f32, size: usize) {
-    let (mut guard, undercoat) = pelts::mink();
+    let (mut guard, undercoat) = scenes::mink();
     guard.density_per_cm2 = guard_per_cm2;
-    let grown = Grown::new(pelts::bent_pelt(1), &guard, &undercoat, Vec3::X, 35.0, 3);
+    let grown = Grown::new(scenes::bent_skin(1), &guard, &undercoat, Vec3::X, 35.0, 3);
     let settings = Settings { size: [size; 2], ..Settings::default() };
-    let camera = pelts::camera(0.35);
-    bencher.bench_local(|| draw(&grown.pelt(), &pelts::studio(), &camera, &settings));
+    let camera = scenes::camera(0.35);
+    bencher.bench_local(|| draw(&grown.scene(), &scenes::studio(), &camera, &settings));
 }
 
 /// Each twice the pixels of the one before: 181², 256², 362², 512², 724².

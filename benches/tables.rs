@@ -11,8 +11,8 @@
 )]
 
 use furrier::coat::axes::axes;
-use furrier::coat::seams::{BeforeAfter, WINDOWS, before_after};
 use furrier::coat::hair::TileHair;
+use furrier::coat::seams::{BeforeAfter, WINDOWS, before_after};
 use furrier::coat::tile::{TileRecipe, bake};
 use furrier::data::coat::Tile;
 use furrier::data::mesh::Mesh;

@@ -5,7 +5,7 @@ use furrier::data::coat::{FinEdge, FinTexture, Sampled, ShellStack, Tile};
 use furrier::data::image::{Image8, srgb_from_linear, unorm8};
 use furrier::math::hash::Stream;
 use furrier::math::{Vec2, Vec3, Vec4};
-use furrier::runtime::{Fur, Scene, Skin};
+use furrier::runtime::{CoatMesh, DrawList, SkinMesh};
 use std::collections::HashMap;
 
 /// Hair of a made tile: `per_m2` hairs, each a straight cone.
@@ -242,8 +242,8 @@ pub struct Furred {
 
 impl Furred {
     /// The scene of this surface wearing `tiles[0]`.
-    pub fn scene<'a>(&'a self, tiles: &'a [Tile]) -> Scene<'a> {
-        let skin = Skin {
+    pub fn scene<'a>(&'a self, tiles: &'a [Tile]) -> DrawList<'a> {
+        let skin = SkinMesh {
             positions_m: self.positions_m.clone(),
             normals: self.normals.clone(),
             colour: vec![self.skin_colour; self.positions_m.len()],
@@ -253,7 +253,7 @@ impl Furred {
             triangles: self.triangles.clone(),
             ..Default::default()
         };
-        let fur = Fur {
+        let fur = CoatMesh {
             tile: 0,
             positions_m: self.positions_m.clone(),
             normals: self.normals.clone(),
@@ -265,7 +265,7 @@ impl Furred {
             fins: self.fins.as_slice().into(),
             over_last: false,
         };
-        Scene { skins: vec![skin], furs: vec![fur], tiles }
+        DrawList { skins: vec![skin], furs: vec![fur], tiles }
     }
 
     /// Fins on every edge, holding the coat once.

@@ -1,6 +1,6 @@
 //! Hair in creases: combed apart where it would cross, left alone elsewhere.
 
-use crate::pelts;
+use crate::scenes;
 use furrier::data::mesh::Mesh;
 use furrier::fur::groom::unfold::unfold;
 use furrier::math::Vec3;
@@ -27,7 +27,7 @@ fn turned(mesh: &Mesh, lean: &[Vec3], length: &[f32]) -> usize {
 /// A sheet bent upwards along its middle by a corner whose sides make `degrees` with each other.
 fn valley(degrees: f32) -> Mesh {
     let (sin, cos) = (0.5 * degrees.to_radians()).sin_cos();
-    pelts::grid(40, 8, |u, v| {
+    scenes::grid(40, 8, |u, v| {
         let across = (u - 0.5) * 0.1;
         Vec3::new(across * sin, across.abs() * cos, (0.5 - v) * 0.02)
     })
@@ -53,7 +53,7 @@ fn hair_in_a_crease_is_combed_apart() {
 
 #[test]
 fn hair_that_does_not_cross_is_left_alone() {
-    let mesh = pelts::bent_pelt(1);
+    let mesh = scenes::bent_skin(1);
     let normals = mesh.smooth_normals();
     let (mut lean, mut length) = (normals.clone(), vec![1.0; normals.len()]);
     unfold(&mesh, &normals, HEIGHT_M, &mut lean, &mut length);

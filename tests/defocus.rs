@@ -1,6 +1,6 @@
 //! Depth of field: the thin lens' law, and no leaks where near meets far.
 
-use crate::pelts;
+use crate::scenes;
 use furrier::data::film::Film;
 use furrier::math::Vec3;
 use furrier::stage::defocus::{Lens, defocus, middle_depth_m};
@@ -9,7 +9,7 @@ use furrier::stage::projection::View;
 pub const SIZE: [usize; 2] = [121, 81];
 
 fn view() -> View {
-    pelts::view(&pelts::looking(Vec3::Z, Vec3::ZERO, Vec3::Y, 30.0), SIZE)
+    scenes::view(&scenes::looking(Vec3::Z, Vec3::ZERO, Vec3::Y, 30.0), SIZE)
 }
 
 /// A film of opaque things: `what` gives colour and depth along the optical axis of a pixel.

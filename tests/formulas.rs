@@ -1,6 +1,6 @@
 //! The shaders' formulas against the same ones in Rust, over random inputs.
 
-use crate::pelts::{self, Grown};
+use crate::scenes::{self, Grown};
 use furrier::gpu::{Binding, Choice, Gpu, Library, Source};
 use furrier::hybrid::Settings;
 use furrier::hybrid::gpu::kernels::SHARED;
@@ -11,7 +11,7 @@ use furrier::math::{Vec2, Vec3, Vec4};
 use furrier::shade::Angles;
 use furrier::shade::kajiya_kay::KajiyaKay;
 use furrier::shade::lobes::Lobes;
-use furrier::volume::pelt::{Layer, sky_depth, slant_depth, terminator};
+use furrier::volume::scene::{Layer, sky_depth, slant_depth, terminator};
 use furrier::volume::shell::subelement;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -77,9 +77,9 @@ fn on_sphere(u: Vec2) -> Vec3 {
 
 fn on_gpu(grown: &Grown, inputs: &[Vec4]) -> Vec<Vec4> {
     let gpu = Gpu::open(&Choice::Auto).unwrap();
-    let pelt = grown.pelt();
-    let lobes = Lobes::new(&pelt.hair.guard).unwrap();
-    let scene = SceneUniform::new(&pelt, &lobes, &pelts::studio(), &Settings::default());
+    let scene = grown.scene();
+    let lobes = Lobes::new(&scene.scattering.guard).unwrap();
+    let scene = SceneUniform::new(&scene, &lobes, &scenes::studio(), &Settings::default());
     let scene_layout = gpu.layout("scene", &[Binding::Uniform]);
     let own_layout = gpu.layout("formulas", &[Binding::Read, Binding::Write]);
     let module = gpu.shader_of(&mut Library::new(&SHARED).unwrap(), MAIN).unwrap();
@@ -103,16 +103,16 @@ fn on_gpu(grown: &Grown, inputs: &[Vec4]) -> Vec<Vec4> {
 
 #[test]
 fn shaders_and_rust_agree_on_every_formula() {
-    let (guard, undercoat) = pelts::mink();
+    let (guard, undercoat) = scenes::mink();
     let grown =
-        Grown::new(pelts::grid(2, 2, |u, v| Vec3::new(u, 0.0, -v) * 0.01), &guard, &undercoat, Vec3::X, 35.0, 3);
-    let pelt = grown.pelt();
+        Grown::new(scenes::grid(2, 2, |u, v| Vec3::new(u, 0.0, -v) * 0.01), &guard, &undercoat, Vec3::X, 35.0, 3);
+    let scene = grown.scene();
     let mut random = Stream::new(7);
     let inputs: Vec<Vec4> =
         (0..2 * COUNT).map(|_| Vec4::new(random.unit(), random.unit(), random.unit(), random.unit())).collect();
     let outputs = on_gpu(&grown, &inputs);
-    let lobes = Lobes::<f32>::new(&pelt.hair.guard).unwrap();
-    let hair = &pelt.hair;
+    let lobes = Lobes::<f32>::new(&scene.scattering.guard).unwrap();
+    let hair = &scene.scattering;
     let kajiya = KajiyaKay::<f32>::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent);
     let layers = [&grown.guard_fibre, &grown.undercoat_fibre];
     let worst: RefCell<BTreeMap<String, (f32, String)>> = RefCell::default();

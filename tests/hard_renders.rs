@@ -1,6 +1,6 @@
 //! Hard cases of the renderer: each ends finite and sane.
 
-use crate::pelts::{self, Grown, grid, looking};
+use crate::scenes::{self, Grown, grid, looking};
 use furrier::data::camera::Camera;
 use furrier::data::film::Film;
 use furrier::data::mesh::Mesh;
@@ -10,7 +10,7 @@ use furrier::hybrid::{Settings, draw};
 use furrier::math::hash::Stream;
 use furrier::math::{DVec3, Vec3};
 use furrier::metrics::compare::{Light, compare};
-use furrier::volume::pelt::Pelt;
+use furrier::volume::scene::Scene;
 
 const SIZE: [usize; 2] = [64, 64];
 
@@ -20,7 +20,7 @@ fn settings() -> Settings {
 
 /// Straight hair, thin enough on the ground to be quick.
 fn hair() -> (Guard, Undercoat) {
-    let (guard, undercoat) = pelts::mink();
+    let (guard, undercoat) = scenes::mink();
     let straight = Shape { length_variation: 0.1, jitter_deg: 3.0, ..Shape::default() };
     (
         Guard { density_per_cm2: 30.0, shape: straight, ..guard },
@@ -37,13 +37,13 @@ fn plane(quads: usize) -> Mesh {
     grid(quads, quads, |u, v| Vec3::new(0.1 * u - 0.05, 0.0, 0.05 - 0.1 * v))
 }
 
-fn film_of(pelt: &Pelt<'_>, camera: &Camera) -> Film {
-    draw(pelt, &pelts::studio(), camera, &settings()).unwrap().film
+fn film_of(scene: &Scene<'_>, camera: &Camera) -> Film {
+    draw(scene, &scenes::studio(), camera, &settings()).unwrap().film
 }
 
 /// Draws, and checks that every value is one that a film may hold.
 fn sane(grown: &Grown, camera: &Camera) -> Film {
-    let film = film_of(&grown.pelt(), camera);
+    let film = film_of(&grown.scene(), camera);
     if let Some(fault) = fault(&film) {
         panic!("{fault}");
     }
@@ -97,7 +97,7 @@ fn eyes_in_the_shell_see_hair_cut_at_the_near_plane() {
     }
     // One hair that begins behind the eye and ends far before it, to the right: what lies before the eye is drawn.
     let one = one_hair(&[Vec3::new(0.01, 0.0, 0.5), Vec3::new(0.01, 0.0, -1.0)], 1e-4);
-    let film = film_of(&bare_pelt(&grown, &one), &looking(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 30.0));
+    let film = film_of(&bare_scene(&grown, &one), &looking(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 30.0));
     let row = SIZE[1] / 2 * SIZE[0];
     let right = film.guard[row - SIZE[0] / 2..row + SIZE[0]].iter().sum::<f32>();
     assert!(right > 0.5, "{right}");
@@ -133,8 +133,8 @@ fn same_hairs(hair: &Strands, count: u32) -> Strands {
 }
 
 /// These hairs alone, far from a skin that is out of sight.
-fn bare_pelt<'a>(grown: &'a Grown, strands: &'a Strands) -> Pelt<'a> {
-    Pelt { guard: Some((strands, &grown.guard_fibre)), undercoat: None, ..grown.pelt() }
+fn bare_scene<'a>(grown: &'a Grown, strands: &'a Strands) -> Scene<'a> {
+    Scene { guard: Some((strands, &grown.guard_fibre)), undercoat: None, ..grown.scene() }
 }
 
 /// A plane that no camera here sees.
@@ -153,7 +153,7 @@ fn a_thousand_equal_depths_on_a_pixel() {
     let one = one_hair(&[Vec3::new(-0.2, pixel_m * 0.5, 0.0), Vec3::new(0.2, pixel_m * 0.5, 0.0)], 1e-3 * pixel_m);
     let camera = looking(Vec3::Z, Vec3::ZERO, Vec3::Y, 10.0);
     let hairs = same_hairs(&one, 1000);
-    let film = film_of(&bare_pelt(&grown, &hairs), &camera);
+    let film = film_of(&bare_scene(&grown, &hairs), &camera);
     let expected = 1.0 - (1.0_f64 - 0.002).powi(1000);
     let at = 31 * SIZE[0] + 32;
     assert!((f64::from(film.alpha[at]) - expected).abs() < 2e-3, "{} for {expected}", film.alpha[at]);
@@ -165,7 +165,7 @@ fn a_thousand_equal_depths_on_a_pixel() {
         shuffled.id.swap(i, j);
         shuffled.tint.swap(i, j);
     }
-    assert_eq!(film_of(&bare_pelt(&grown, &shuffled), &camera), film);
+    assert_eq!(film_of(&bare_scene(&grown, &shuffled), &camera), film);
 }
 
 #[test]
@@ -182,7 +182,7 @@ fn hair_of_a_thousandth_of_a_pixel_covers_its_area() {
         strands.points_m[2 * hair + 1] = b;
         area += f64::from(a.distance(b) / pixel_m) * 1e-3;
     }
-    let film = film_of(&bare_pelt(&grown, &strands), &looking(Vec3::Z, Vec3::ZERO, Vec3::Y, 10.0));
+    let film = film_of(&bare_scene(&grown, &strands), &looking(Vec3::Z, Vec3::ZERO, Vec3::Y, 10.0));
     let covered = film.alpha.iter().map(|&a| f64::from(a)).sum::<f64>();
     assert!((covered / area - 1.0).abs() < 0.01, "{covered} px for {area}");
 }
@@ -190,7 +190,7 @@ fn hair_of_a_thousandth_of_a_pixel_covers_its_area() {
 #[test]
 fn hair_of_no_length_density_or_radius() {
     let (guard, undercoat) = hair();
-    let camera = pelts::camera(0.25);
+    let camera = scenes::camera(0.25);
     let zero = furrier::fur::groom::Length::Mm(0.0);
     for (guard, undercoat) in [
         (Guard { length: zero, ..guard }, Undercoat { length: zero, ..undercoat }),
@@ -205,7 +205,7 @@ fn hair_of_no_length_density_or_radius() {
 
 #[test]
 fn slivers_and_folds_and_odd_borders() {
-    let camera = pelts::camera(0.3);
+    let camera = scenes::camera(0.3);
     // Triangles a million times as long as wide, among sound ones.
     let sliver = grid(8, 3, |u, v| {
         let v = [0.0, 0.5, 0.500_000_1, 1.0][(v * 3.0 + 0.5) as usize];
@@ -269,16 +269,16 @@ fn shuffled(grown: &Grown) -> Grown {
 
 #[test]
 fn order_bands_and_threads_do_not_show() {
-    let grown = grown(pelts::bent_pelt(1), 35.0);
-    let camera = pelts::camera(0.35);
+    let grown = grown(scenes::bent_skin(1), 35.0);
+    let camera = scenes::camera(0.35);
     let film = sane(&grown, &camera);
-    let shuffled = film_of(&shuffled(&grown).pelt(), &camera);
+    let shuffled = film_of(&shuffled(&grown).scene(), &camera);
     println!("shuffled: FLIP {:.6}, same bytes: {}", flip(&film, &shuffled), film == shuffled);
     assert_eq!(film, shuffled);
     let small = Settings { band_bytes: 1, ..settings() };
-    assert_eq!(draw(&grown.pelt(), &pelts::studio(), &camera, &small).unwrap().film, film);
+    assert_eq!(draw(&grown.scene(), &scenes::studio(), &camera, &small).unwrap().film, film);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    assert_eq!(pool.install(|| film_of(&grown.pelt(), &camera)), film);
+    assert_eq!(pool.install(|| film_of(&grown.scene(), &camera)), film);
 }
 
 #[test]
@@ -319,7 +319,7 @@ fn placed(
     shift: DVec3,
 ) -> Film {
     use base64::Engine;
-    use furrier::bake::picture::{Grown, Only, Scene, studio};
+    use furrier::bake::picture::{Grown, Only, PictureRequest, studio};
     let mut document = furrier::asset::load("sample:torus").unwrap().document;
     change(&mut document.json["nodes"][0]);
     let accessor = document.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"].as_u64().unwrap() as usize;
@@ -339,7 +339,7 @@ fn placed(
     let path = folder.join(format!("{name}.gltf"));
     std::fs::write(&path, serde_json::to_vec(&document.json).unwrap()).unwrap();
     let thinner = ["guard.density_per_cm2=4".to_owned(), "undercoat.density_per_cm2=100".to_owned()];
-    let grown = Grown::new(&Scene {
+    let grown = Grown::new(&PictureRequest {
         input: path.to_str().unwrap().to_owned(),
         preset: furrier::preset::Preset::load("mink").unwrap().with_settings(&thinner).unwrap(),
         materials: vec![],

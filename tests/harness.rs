@@ -3,9 +3,9 @@
 use crate::architecture::breaches;
 use crate::circles::circles;
 use crate::docs::first_difference;
+use crate::hybrid_twins::share_alike;
 use crate::laws::shading::furnace;
 use crate::metrics::{changed, picture};
-use crate::pelt_twins::share_alike;
 use furrier::data::image::Image8;
 use furrier::data::ray::DepthRange;
 use furrier::math::Vec3;
@@ -245,7 +245,7 @@ fn twins_tell_two_pixels_in_a_thousand() {
 
 #[test]
 fn the_reference_sees_a_light_three_hundredths_too_weak() {
-    let mut lighting = crate::pelts::studio();
+    let mut lighting = crate::scenes::studio();
     lighting.key.irradiance *= 0.97;
     lighting.ambient *= 0.97;
     let difference = crate::oracle::against_reference(&lighting);

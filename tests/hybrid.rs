@@ -1,6 +1,6 @@
 //! Guard hair and undercoat in one picture: what holds wherever the eye is and whatever the hair is like.
 
-use crate::pelts::{self, Grown};
+use crate::scenes::{self, Grown};
 use furrier::data::camera::Camera;
 use furrier::data::film::{Film, Layers};
 use furrier::hybrid::resolve::Blending;
@@ -28,14 +28,14 @@ const SETTINGS: Settings = Settings {
 };
 
 fn thin() -> Grown {
-    let (mut guard, mut undercoat) = pelts::mink();
+    let (mut guard, mut undercoat) = scenes::mink();
     guard.density_per_cm2 = 40.0;
     undercoat.density_per_cm2 = 1000.0;
-    Grown::new(pelts::bent_pelt(1), &guard, &undercoat, Vec3::X, 35.0, 3)
+    Grown::new(scenes::bent_skin(1), &guard, &undercoat, Vec3::X, 35.0, 3)
 }
 
 fn film(grown: &Grown, camera: &Camera, settings: &Settings) -> Film {
-    draw(&grown.pelt(), &pelts::studio(), camera, settings).unwrap().film
+    draw(&grown.scene(), &scenes::studio(), camera, settings).unwrap().film
 }
 
 /// Names the first pixel that no film may hold.
@@ -55,17 +55,17 @@ fn an_eye_inside_the_coat_sees_hair() {
     let grown = thin();
     for eye_m in [Vec3::new(0.0, 0.043, 0.0), Vec3::new(0.01, 0.0402, 0.001), Vec3::new(0.0, 0.0, 0.0)] {
         for target_m in [Vec3::new(0.3, 0.05, 0.02), Vec3::new(0.0, 1.0, 0.01), Vec3::new(0.0, -1.0, 0.0)] {
-            let camera = pelts::looking(eye_m, target_m, Vec3::Z, 57.0);
+            let camera = scenes::looking(eye_m, target_m, Vec3::Z, 57.0);
             sane(&film(&grown, &camera, &SETTINGS));
         }
     }
-    let camera = pelts::looking(Vec3::new(0.0, 0.043, 0.0), Vec3::new(0.3, 0.043, 0.0), Vec3::Y, 57.0);
+    let camera = scenes::looking(Vec3::new(0.0, 0.043, 0.0), Vec3::new(0.3, 0.043, 0.0), Vec3::Y, 57.0);
     assert!(film(&grown, &camera, &SETTINGS).undercoat.iter().sum::<f32>() > 500.0);
 }
 
 #[test]
 fn bare_skin_and_hair_of_no_width_change_nothing() {
-    let camera = pelts::camera(0.35);
+    let camera = scenes::camera(0.35);
     let mut grown = thin();
     grown.fields.density.fill(0.0);
     grown.guard_fibre.radius_m = 0.0;
@@ -80,7 +80,7 @@ fn bare_skin_and_hair_of_no_width_change_nothing() {
 
 #[test]
 fn threads_do_not_show() {
-    let (grown, camera) = (thin(), pelts::camera(0.35));
+    let (grown, camera) = (thin(), scenes::camera(0.35));
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| film(&grown, &camera, &SETTINGS))
@@ -90,7 +90,7 @@ fn threads_do_not_show() {
 
 #[test]
 fn all_blendings_cover_what_both_kinds_cover() {
-    let (grown, camera) = (thin(), pelts::camera(0.35));
+    let (grown, camera) = (thin(), scenes::camera(0.35));
     let exact = film(&grown, &camera, &Settings { blending: Blending::Virtual { fragments: 64 }, ..SETTINGS });
     sane(&exact);
     for fragments in [1, 4, 16] {
@@ -103,13 +103,13 @@ fn all_blendings_cover_what_both_kinds_cover() {
 
 #[test]
 fn shorter_steps_agree_with_longer_ones() {
-    let (grown, camera) = (thin(), pelts::camera(0.35));
-    let mut pelt = grown.pelt();
-    pelt.guard = None;
+    let (grown, camera) = (thin(), scenes::camera(0.35));
+    let mut scene = grown.scene();
+    scene.guard = None;
     let mean = |depth: f32, layers: f32| {
         let stepping = furrier::volume::march::Stepping { depth, layers };
         let settings = Settings { stepping, ..SETTINGS };
-        draw(&pelt, &pelts::studio(), &camera, &settings).unwrap().film.coverage()
+        draw(&scene, &scenes::studio(), &camera, &settings).unwrap().film.coverage()
     };
     let (fine, coarse) = (mean(0.02, 0.25), mean(0.25, 2.0));
     assert!((fine - coarse).abs() < 0.003, "coverage {fine} by short steps, {coarse} by long ones");
@@ -118,7 +118,7 @@ fn shorter_steps_agree_with_longer_ones() {
 #[test]
 fn layers_that_are_not_asked_for_take_no_room_and_change_nothing() {
     let grown = thin();
-    let camera = pelts::camera(0.2);
+    let camera = scenes::camera(0.2);
     let of = |layers| film(&grown, &camera, &Settings { layers, halvings: 1, ..SETTINGS });
     let [all, depth, light] = [Layers::All, Layers::LightAndDepth, Layers::Light].map(of);
     for film in [&depth, &light] {

@@ -167,7 +167,7 @@ impl Work for Crowding<'_> {
 
 #[test]
 fn columns_side_by_side_crowd_as_one_does() {
-    let fibre = Fibre::undercoat(&crate::pelts::mink().1, &Colour::default(), 0.5);
+    let fibre = Fibre::undercoat(&crate::scenes::mink().1, &Colour::default(), 0.5);
     let mut undercoat = Undercoat::new(&fibre, Some(Pattern::default()));
     (undercoat.clump_strength, undercoat.clump_spacing_m) = (0.8, 2e-3);
     let mut random = Stream::new(13);

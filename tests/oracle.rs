@@ -1,6 +1,6 @@
 //! The renderer against the reference, and the reference against closed forms.
 
-use crate::pelts::{self, Grown};
+use crate::scenes::{self, Grown};
 use crate::undercoat::{Cylinders, depth_of_volume, directions, on_level_skin};
 use furrier::data::film::Film;
 use furrier::hybrid::{self, draw};
@@ -13,13 +13,13 @@ use furrier::reference::medium::{Counted, Medium};
 use furrier::reference::point::ShellPoint;
 use furrier::reference::sight::Sight;
 use furrier::reference::{self, Settings};
-use furrier::volume::pelt::Lighting;
+use furrier::volume::scene::Lighting;
 
 /// Optical depth of the reference's medium along a ray from above through hair of one length on level skin.
 fn depth_of_reference(hairs: &Cylinders, direction: DVec3) -> f64 {
-    on_level_skin(hairs, |pelt| {
-        let normals = pelt.skin.smooth_normals();
-        let medium = Medium::new(pelt, &normals, None).unwrap();
+    on_level_skin(hairs, |scene| {
+        let normals = scene.skin.smooth_normals();
+        let medium = Medium::new(scene, &normals, None).unwrap();
         // Through a point over the middle, off any lattice line.
         let through = DVec3::new(0.13, 0.29, 1.0) * hairs.length_m;
         let ray = Ray::new(through - direction * (20.0 * hairs.length_m), direction);
@@ -50,24 +50,24 @@ fn volume_and_reference_find_the_same_optical_depth_in_leaning_hair() {
 }
 
 fn thin() -> Grown {
-    let (mut guard, mut undercoat) = pelts::mink();
+    let (mut guard, mut undercoat) = scenes::mink();
     guard.density_per_cm2 = 60.0;
     undercoat.density_per_cm2 = 1500.0;
-    Grown::new(pelts::bent_pelt(1), &guard, &undercoat, Vec3::X, 35.0, 3)
+    Grown::new(scenes::bent_skin(1), &guard, &undercoat, Vec3::X, 35.0, 3)
 }
 
 const SIZE: [usize; 2] = [48, 48];
 
 fn by_reference(size: [usize; 2], grown: &Grown, lighting: &Lighting, lines: usize, seed: u64) -> Film {
     let settings = Settings { lines, lightness_error: f64::INFINITY, seed, ..Settings::new(size) };
-    reference::draw(&grown.pelt(), lighting, &pelts::camera(0.35), &settings).unwrap()
+    reference::draw(&grown.scene(), lighting, &scenes::camera(0.35), &settings).unwrap()
 }
 
 /// The renderer's picture under `lighting` against the reference under the usual light.
 pub fn against_reference(lighting: &Lighting) -> Difference {
     let grown = thin();
-    let film = by_reference(SIZE, &grown, &pelts::studio(), 2, 1);
-    let drawn = draw(&grown.pelt(), lighting, &pelts::camera(0.35), &hybrid::Settings::best(SIZE)).unwrap().film;
+    let film = by_reference(SIZE, &grown, &scenes::studio(), 2, 1);
+    let drawn = draw(&grown.scene(), lighting, &scenes::camera(0.35), &hybrid::Settings::best(SIZE)).unwrap().film;
     let difference = compare(&Light::from(&film), &Light::from(&drawn)).unwrap();
     println!("{difference:?}");
     difference
@@ -87,7 +87,7 @@ pub fn fault(difference: &Difference) -> Option<&'static str> {
 
 #[test]
 fn the_renderer_draws_what_the_reference_draws() {
-    assert_eq!(fault(&against_reference(&pelts::studio())), None);
+    assert_eq!(fault(&against_reference(&scenes::studio())), None);
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn a_reference_has_the_same_bytes_on_any_number_of_threads() {
     let grown = thin();
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| by_reference([10, 10], &grown, &pelts::studio(), 1, 5))
+        pool.install(|| by_reference([10, 10], &grown, &scenes::studio(), 1, 5))
     };
     assert_eq!(with(1), with(3));
 }
@@ -137,18 +137,18 @@ fn a_line_sees_a_hair_where_its_rays_meet_it() {
     assert!(gap < 3e-5, "{gap} of a stretch");
 }
 
-/// Of a thousand random places in a pelt's shell, how many a ray through them does not find where they are, if it passes
+/// Of a thousand random places in a scene's shell, how many a ray through them does not find where they are, if it passes
 /// `beside` of the shell's height away.
 pub fn places_missed(beside: f64) -> usize {
     let grown = thin();
-    let pelt = grown.pelt();
-    let normals = pelt.skin.smooth_normals();
-    let medium = Medium::new(&pelt, &normals, None).unwrap();
+    let scene = grown.scene();
+    let normals = scene.skin.smooth_normals();
+    let medium = Medium::new(&scene, &normals, None).unwrap();
     let height_m = f64::from(medium.shell.undercoat.height_m);
     let mut random = Stream::new(11);
     let mut unit = || f64::from(random.unit());
     let missed = |_: &usize| {
-        let triangle = (unit() * pelt.skin.triangles.len() as f64) as u32;
+        let triangle = (unit() * scene.skin.triangles.len() as f64) as u32;
         let (u, v) = (unit(), unit());
         let b = if u + v < 1.0 { DVec3::new(u, v, 1.0 - u - v) } else { DVec3::new(1.0 - u, 1.0 - v, u + v - 1.0) };
         let place = ShellPoint { triangle, b, t: unit() };
@@ -216,7 +216,7 @@ fn a_ray_is_followed_to_where_a_prism_folds() {
 /// How far two seeds of the reference are apart.
 fn between_seeds(lines: usize) -> Difference {
     let grown = thin();
-    let [a, b] = [1, 2].map(|seed| by_reference([16, 16], &grown, &pelts::studio(), lines, seed));
+    let [a, b] = [1, 2].map(|seed| by_reference([16, 16], &grown, &scenes::studio(), lines, seed));
     compare(&Light::from(&a), &Light::from(&b)).unwrap()
 }
 

@@ -1,9 +1,9 @@
 //! Hair on a skin that moves: the same hairs in every pose, and no flicker.
 
 use crate::common::furrier_path;
-use crate::pelts::{self, Grown};
+use crate::scenes::{self, Grown};
 use assert_cmd::Command;
-use furrier::bake::picture::{self, Only, Scene, studio};
+use furrier::bake::picture::{self, Only, PictureRequest, studio};
 use furrier::bake::units::Units;
 use furrier::data::camera::Camera;
 use furrier::data::film::Film;
@@ -21,7 +21,7 @@ fn length_m(strands: &Strands, hair: usize) -> f32 {
 fn creature(pose: Option<f64>) -> picture::Grown {
     let preset = Preset::load("fox").unwrap();
     let thinner = ["guard.density_per_cm2=60".to_owned(), "undercoat.density_per_cm2=3000".to_owned()];
-    picture::Grown::new(&Scene {
+    picture::Grown::new(&PictureRequest {
         input: "sample:creature".into(),
         preset: preset.with_settings(&thinner).unwrap(),
         materials: vec![],
@@ -35,7 +35,7 @@ fn creature(pose: Option<f64>) -> picture::Grown {
 
 #[test]
 fn a_skin_that_turns_takes_its_hair_along() {
-    let (guard, undercoat) = pelts::mink();
+    let (guard, undercoat) = scenes::mink();
     let guard = furrier::fur::groom::Guard {
         density_per_cm2: 20.0,
         shape: furrier::fur::groom::Shape {
@@ -44,7 +44,7 @@ fn a_skin_that_turns_takes_its_hair_along() {
         },
         ..guard
     };
-    let grown = Grown::new(pelts::bent_pelt(1), &guard, &undercoat, Vec3::X, 35.0, 3);
+    let grown = Grown::new(scenes::bent_skin(1), &guard, &undercoat, Vec3::X, 35.0, 3);
     let (turn, shift) = (Quat::from_rotation_x(1.0) * Quat::from_rotation_y(2.0), Vec3::new(0.2, -0.1, 0.3));
     let mut mesh = grown.mesh.clone();
     mesh.rest_m = Some(mesh.positions_m.clone());
@@ -62,7 +62,7 @@ fn a_skin_that_turns_takes_its_hair_along() {
 #[test]
 fn every_pose_wears_the_same_hair() {
     let (rest, walking) = (creature(None), creature(Some(0.25)));
-    let strands = |grown: &picture::Grown| grown.pelt().guard.unwrap().0.clone();
+    let strands = |grown: &picture::Grown| grown.scene().guard.unwrap().0.clone();
     let (a, b) = (strands(&rest), strands(&walking));
     assert!(a.len() > 10_000);
     assert_eq!((&a.id, &a.roots, &a.tint, &a.root_radius_m), (&b.id, &b.roots, &b.tint, &b.root_radius_m));
@@ -105,15 +105,15 @@ fn flicker(films: impl Fn(&Settings) -> Vec<Film>, what: &str) -> f64 {
 
 #[test]
 fn an_orbit_flickers_no_more_than_the_truth() {
-    let (mut guard, undercoat) = pelts::mink();
+    let (mut guard, undercoat) = scenes::mink();
     guard.density_per_cm2 = 50.0;
-    let grown = Grown::new(pelts::bent_pelt(1), &guard, &undercoat, Vec3::X, 35.0, 3);
+    let grown = Grown::new(scenes::bent_skin(1), &guard, &undercoat, Vec3::X, 35.0, 3);
     let eye = |k: usize| {
         let angle = 0.6 + 0.004 * k as f32;
-        pelts::looking(Vec3::new(angle.sin(), 0.7, angle.cos()) * 0.35, Vec3::ZERO, Vec3::Y, 34.0)
+        scenes::looking(Vec3::new(angle.sin(), 0.7, angle.cos()) * 0.35, Vec3::ZERO, Vec3::Y, 34.0)
     };
     let films = |settings: &Settings| -> Vec<Film> {
-        (0..3).map(|k| draw(&grown.pelt(), &pelts::studio(), &eye(k), settings).unwrap().film).collect()
+        (0..3).map(|k| draw(&grown.scene(), &scenes::studio(), &eye(k), settings).unwrap().film).collect()
     };
     assert!(flicker(films, "orbit") < NOISE);
 }

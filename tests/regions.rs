@@ -9,7 +9,7 @@ use furrier::math::{Mat4, Vec3, Vec4};
 use furrier::preset::Preset;
 use furrier::runtime::cpu::{self, Stack};
 use furrier::runtime::gpu::Renderer;
-use furrier::runtime::{Show, View};
+use furrier::runtime::{Frame, Show};
 use furrier::viewer::stage;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -58,7 +58,7 @@ fn columns(gpu: &Gpu, asset: &asset::Asset, coat: &Coat) -> Vec<f32> {
     let (sin, cos) = 40.0_f32.to_radians().sin_cos();
     let direction = Vec3::new(0.0, -cos, -sin);
     let scale = 2.0 / 0.16;
-    let view = View {
+    let view = Frame {
         clip_from_world: Mat4::from_cols(
             Vec4::new(scale, 0.0, 0.0, 0.0),
             Vec4::new(0.0, scale * direction.z / direction.y, -1.0, 0.0),

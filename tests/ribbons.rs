@@ -1,6 +1,6 @@
 //! Guard hair as ribbons: areas, order, and agreement with rays cast at the same hairs.
 
-use crate::pelts::{self, Grown};
+use crate::scenes::{self, Grown};
 use furrier::cast::Caster;
 use furrier::cast::Geometry;
 use furrier::cast::Rays;
@@ -13,7 +13,7 @@ use furrier::hybrid::{Picture, Settings, draw};
 use furrier::math::hash::Stream;
 use furrier::math::lanes::{self, Isa};
 use furrier::math::{Vec3, radix};
-use furrier::volume::pelt::Pelt;
+use furrier::volume::scene::Scene;
 
 pub fn covered(a: &Knot, b: &Knot) -> f64 {
     let mut sum = 0.0;
@@ -164,17 +164,17 @@ fn radix_sort_sorts() {
 }
 
 fn sparse() -> Grown {
-    let (mut guard, undercoat) = pelts::mink();
+    let (mut guard, undercoat) = scenes::mink();
     guard.density_per_cm2 = 40.0;
-    Grown::new(pelts::bent_pelt(1), &guard, &undercoat, Vec3::X, 35.0, 3)
+    Grown::new(scenes::bent_skin(1), &guard, &undercoat, Vec3::X, 35.0, 3)
 }
 
-fn only_guard(grown: &Grown) -> Pelt<'_> {
-    Pelt { undercoat: None, ..grown.pelt() }
+fn only_guard(grown: &Grown) -> Scene<'_> {
+    Scene { undercoat: None, ..grown.scene() }
 }
 
 fn drawn(grown: &Grown, settings: &Settings) -> Picture {
-    draw(&only_guard(grown), &pelts::studio(), &pelts::camera(0.35), settings).unwrap()
+    draw(&only_guard(grown), &scenes::studio(), &scenes::camera(0.35), settings).unwrap()
 }
 
 /// Largest difference of guard hair's coverage between two films, over blocks of 8 × 8 pixels.
@@ -196,7 +196,7 @@ pub fn ribbons_and_rays() -> (Film, Film) {
     let size = [128, 128];
     let ribbons = drawn(&grown, &Settings { size, ..Settings::default() }).film;
     let scene = Geometry { guard: Some(&grown.guard), skin: Some(&grown.mesh), ..Geometry::default() };
-    let rays = Rays::Perspective { view: pelts::view(&pelts::camera(0.35), size), supersampling: 8 };
+    let rays = Rays::Perspective { view: scenes::view(&scenes::camera(0.35), size), supersampling: 8 };
     (ribbons, Caster::new(scene).render(&rays, DepthRange::ALL))
 }
 

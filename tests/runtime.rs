@@ -10,13 +10,13 @@ use furrier::gpu::{Choice, Gpu};
 use furrier::math::{DVec3, Vec3, Vec4};
 use furrier::metrics::compare::{Difference, Light, compare, load};
 use furrier::runtime::gpu::Renderer;
-use furrier::runtime::{Picture, Show, View};
+use furrier::runtime::{Frame, Picture, Show};
 use std::path::Path;
 
-fn look(eye: Vec3, size: [u32; 2]) -> View {
+fn look(eye: Vec3, size: [u32; 2]) -> Frame {
     let camera = Camera { eye: eye.as_dvec3().into(), target: [0.0; 3], up: [0.0, 1.0, 0.0], vfov_deg: 30.0 };
     let (far, aspect) = (f64::from(eye.length()) * 2.0, f64::from(size[0]) / f64::from(size[1]));
-    View {
+    Frame {
         clip_from_world: camera.clip_from_world(DVec3::ZERO, aspect, far * 0.05, far).as_mat4(),
         eye: Vec4::from((eye, 1.0)),
         size,
@@ -127,10 +127,10 @@ fn what_cannot_be_drawn_is_refused() {
     let kind = |result: furrier::Result<_>| result.map(|_: furrier::runtime::gpu::Drawn| ()).unwrap_err().kind;
     let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
     let view = look(Vec3::Z, [16, 16]);
-    for view in [View { size: [0, 16], ..view.clone() }, View { size: [1_000_000, 16], ..view.clone() }] {
+    for view in [Frame { size: [0, 16], ..view.clone() }, Frame { size: [1_000_000, 16], ..view.clone() }] {
         assert_eq!(kind(renderer.draw(&ball.scene(&tiles), &view, Show::default())), Kind::Usage);
     }
-    let many = View { lights: vec![view.lights[0]; 17], ..view };
+    let many = Frame { lights: vec![view.lights[0]; 17], ..view };
     assert_eq!(kind(renderer.draw(&ball.scene(&tiles), &many, Show::default())), Kind::Usage);
     assert_eq!(Renderer::new(&gpu, &tiles, 9).err().unwrap().kind, Kind::Usage);
     let mut broken = small_tile();

@@ -1,7 +1,7 @@
-//! The key light's shadow: stored depths, hair in the mean, and what a pelt hides from behind.
+//! The key light's shadow: stored depths, hair in the mean, and what a scene hides from behind.
 
-use crate::pelts::{self, Grown};
-use furrier::bake::picture::{self as depicted, Only, Scene, studio};
+use crate::scenes::{self, Grown};
+use furrier::bake::picture::{self as depicted, Only, PictureRequest, studio};
 use furrier::bake::units::Units;
 use furrier::hybrid::{Settings, draw};
 use furrier::math::Vec3;
@@ -12,7 +12,7 @@ use furrier::reference::medium::{Counted, Medium};
 use furrier::reference::point::ShellPoint;
 use furrier::reference::skin::Skin;
 use furrier::volume::mean::MeanShadow;
-use furrier::volume::pelt::{Layer, Pelt};
+use furrier::volume::scene::{Layer, Scene};
 use furrier::volume::shell::lattice::{self, Lattice, Lattices};
 
 /// What a lattice holds at a place, in the first lane.
@@ -60,20 +60,20 @@ fn stored_shadows_are_linear_between_corners_and_levels() {
 
 #[test]
 fn mean_shadow_is_a_flat_layers_far_from_borders_and_nothing_on_one_towards_the_light() {
-    let (mut guard, mut undercoat) = pelts::mink();
+    let (mut guard, mut undercoat) = scenes::mink();
     (guard.density_per_cm2, undercoat.density_per_cm2) = (30.0, 900.0);
     // The closed form knows neither taper nor transparent tips.
     (guard.taper, guard.tip_transparency) = (1.0, 0.0);
     (guard.shape.jitter_deg, undercoat.shape.jitter_deg) = (0.0, 0.0);
-    let mesh = pelts::grid(12, 12, |u, v| Vec3::new((u - 0.5) * 0.6, 0.0, (0.5 - v) * 0.6));
+    let mesh = scenes::grid(12, 12, |u, v| Vec3::new((u - 0.5) * 0.6, 0.0, (0.5 - v) * 0.6));
     let grown = Grown::new(mesh, &guard, &undercoat, Vec3::X, 0.0, 3);
-    let pelt = grown.pelt();
+    let scene = grown.scene();
     let to_light = Vec3::new(0.6, 0.8, 0.0);
-    let shadow = MeanShadow::new(&pelt, to_light, f32::INFINITY).unwrap();
-    let layers = [pelt.guard.unwrap().1, pelt.undercoat.unwrap()].map(|fibre| Layer::new(fibre, 1.0, 1.0));
-    let middle = (0..pelt.skin.triangles.len() as u32)
+    let shadow = MeanShadow::new(&scene, to_light, f32::INFINITY).unwrap();
+    let layers = [scene.guard.unwrap().1, scene.undercoat.unwrap()].map(|fibre| Layer::new(fibre, 1.0, 1.0));
+    let middle = (0..scene.skin.triangles.len() as u32)
         .min_by(|&a, &b| {
-            let far = |t: u32| pelt.skin.corners_m(t as usize).iter().map(|p| p.length()).sum::<f32>();
+            let far = |t: u32| scene.skin.corners_m(t as usize).iter().map(|p| p.length()).sum::<f32>();
             far(a).total_cmp(&far(b))
         })
         .unwrap();
@@ -83,25 +83,25 @@ fn mean_shadow_is_a_flat_layers_far_from_borders_and_nothing_on_one_towards_the_
         let found = shadow.depth(middle, Vec3::splat(1.0 / 3.0), share);
         assert!((found / expected - 1.0).abs() < 0.02, "at {share}: {found}, flat {expected}");
     }
-    let border = pelt.skin.positions_m.iter().map(|p| p.x).fold(f32::MIN, f32::max);
+    let border = scene.skin.positions_m.iter().map(|p| p.x).fold(f32::MIN, f32::max);
     let of_columns = shadow.of_columns();
     // No two vertices are at one place: column after column is over vertex after vertex.
-    let per_column = of_columns.len() / pelt.skin.positions_m.len();
-    for (v, p) in pelt.skin.positions_m.iter().enumerate().filter(|(_, p)| p.x == border) {
+    let per_column = of_columns.len() / scene.skin.positions_m.len();
+    for (v, p) in scene.skin.positions_m.iter().enumerate().filter(|(_, p)| p.x == border) {
         let depths = &of_columns[v * per_column..(v + 1) * per_column];
         assert!(depths.iter().all(|&depth| depth < 1e-4), "at {p}: {depths:?}");
     }
 }
 
-/// Greatest share of guard hair over the bare side of a bent pelt that is seen from below, well inside its outline.
+/// Greatest share of guard hair over the bare side of a bent scene that is seen from below, well inside its outline.
 #[test]
 fn no_hair_shows_through_the_bare_side() {
-    let (guard, undercoat) = pelts::mink();
-    let grown = Grown::new(pelts::bent_pelt(2), &guard, &undercoat, Vec3::X, 35.0, 3);
+    let (guard, undercoat) = scenes::mink();
+    let grown = Grown::new(scenes::bent_skin(2), &guard, &undercoat, Vec3::X, 35.0, 3);
     let centre = grown.mesh.positions_m.iter().sum::<Vec3>() / grown.mesh.positions_m.len() as f32;
-    let below = pelts::looking(centre - Vec3::new(0.0, 0.25, 0.03), centre, Vec3::X, 34.0);
+    let below = scenes::looking(centre - Vec3::new(0.0, 0.25, 0.03), centre, Vec3::X, 34.0);
     let settings = Settings { size: [64, 64], ..Settings::default() };
-    let film = draw(&grown.pelt(), &pelts::studio(), &below, &settings).unwrap().film;
+    let film = draw(&grown.scene(), &scenes::studio(), &below, &settings).unwrap().film;
     let skin = |i: usize| film.alpha[i] - film.guard[i] - film.undercoat[i];
     let inside = (0..film.alpha.len()).filter(|&i| {
         let (x, y) = (i % 64, i / 64);
@@ -115,10 +115,10 @@ fn no_hair_shows_through_the_bare_side() {
 
 /// Light that the key light's shadow lets through over a place of every seventh triangle of a hat, at three heights: what
 /// `shadow`, of columns `span` apart, has against the reference's medium, as the mean size of the difference.
-fn strays_on_a_hat(b: Vec3, span: f32, shadow: impl Fn(&MeanShadow<'_>, &Pelt<'_>, u32, f32, f32) -> f32) -> f64 {
+fn strays_on_a_hat(b: Vec3, span: f32, shadow: impl Fn(&MeanShadow<'_>, &Scene<'_>, u32, f32, f32) -> f32) -> f64 {
     let mut preset = Preset::load("mink").unwrap();
     preset.undercoat.shape.clump.strength = 0.0;
-    let scene = Scene {
+    let request = PictureRequest {
         input: "sample:hat".to_owned(),
         preset,
         materials: Vec::new(),
@@ -127,16 +127,16 @@ fn strays_on_a_hat(b: Vec3, span: f32, shadow: impl Fn(&MeanShadow<'_>, &Pelt<'_
         only: Only::Hybrid,
         pose: None,
     };
-    let grown = depicted::Grown::new(&scene).unwrap();
+    let grown = depicted::Grown::new(&request).unwrap();
     let to_light = studio(&grown.camera(35.0, 20.0, 1.0, [1, 1])).key.to_light;
-    let pelt = grown.pelt();
-    let normals = pelt.skin.smooth_normals();
-    let medium = Medium::new(&pelt, &normals, None).unwrap();
-    let skin = Skin::new(pelt.skin);
-    let mean = MeanShadow::new(&pelt, to_light, span).unwrap();
+    let scene = grown.scene();
+    let normals = scene.skin.smooth_normals();
+    let medium = Medium::new(&scene, &normals, None).unwrap();
+    let skin = Skin::new(scene.skin);
+    let mean = MeanShadow::new(&scene, to_light, span).unwrap();
     let (mut strays, mut count) = (0.0, 0.0);
-    for triangle in (0..pelt.skin.triangles.len() as u32).step_by(7) {
-        let cosine = normals[pelt.skin.triangles[triangle as usize][0] as usize].dot(to_light);
+    for triangle in (0..scene.skin.triangles.len() as u32).step_by(7) {
+        let cosine = normals[scene.skin.triangles[triangle as usize][0] as usize].dot(to_light);
         if cosine < 0.05 {
             continue;
         }
@@ -146,7 +146,7 @@ fn strays_on_a_hat(b: Vec3, span: f32, shadow: impl Fn(&MeanShadow<'_>, &Pelt<'_
             let ray = Ray::new(medium.slabs.position_m(&place), to_light.as_dvec3());
             let to_m = skin.meet(&ray, 1e-7).map_or(f64::INFINITY, |(at_m, _)| at_m);
             let expected = medium.depth_along(&ray, 1e-9, to_m, Counted::Both, 15.0);
-            let found = f64::from(shadow(&mean, &pelt, triangle, share, cosine));
+            let found = f64::from(shadow(&mean, &scene, triangle, share, cosine));
             strays += ((-0.5 * found).exp() - (-0.5 * expected).exp()).abs();
             count += 1.0;
         }
@@ -160,8 +160,8 @@ fn mean_shadow_is_the_references_where_a_crown_shades_its_brim() {
         strays_on_a_hat(Vec3::X, f32::INFINITY, |mean, _, triangle, share, _| mean.depth(triangle, Vec3::X, share));
     assert!(strays < 0.015, "{strays}");
     // A flat layer's shadow knows of no crown.
-    let flat = strays_on_a_hat(Vec3::X, f32::INFINITY, |mean, pelt, _, share, cosine| {
-        let layers = [pelt.guard.unwrap().1, pelt.undercoat.unwrap()].map(|fibre| Layer::new(fibre, 1.0, 1.0));
+    let flat = strays_on_a_hat(Vec3::X, f32::INFINITY, |mean, scene, _, share, cosine| {
+        let layers = [scene.guard.unwrap().1, scene.undercoat.unwrap()].map(|fibre| Layer::new(fibre, 1.0, 1.0));
         let height_m = share / mean.share(1.0, 1.0);
         layers.iter().map(|layer| layer.above(height_m)).sum::<f32>() / cosine
     });

@@ -1,6 +1,6 @@
 //! The fringe of a furred sphere against the same strands, ray cast from the same camera.
 
-use crate::{coats, pelts};
+use crate::{coats, scenes};
 use furrier::cast::Caster;
 use furrier::cast::Geometry;
 use furrier::cast::Rays;
@@ -18,7 +18,7 @@ use furrier::fur::grow;
 use furrier::gpu::{Choice, Gpu};
 use furrier::math::{Vec3, Vec4};
 use furrier::runtime::gpu::Renderer;
-use furrier::runtime::{Show, View};
+use furrier::runtime::{Frame, Show};
 
 const RADIUS_M: f32 = 0.04;
 const PIXELS: usize = 128;
@@ -27,7 +27,7 @@ const EYE: Vec3 = Vec3::new(0.06, 0.1, 0.35);
 /// Mean alpha over rings from the skin's outline to one hair length (`height_m`) beyond it, inner to outer, and over all.
 fn rings(alpha: &[f32], height_m: f32) -> [f32; 5] {
     let mut sums = [(0.0, 0.0); 5];
-    let rays = Rays::Perspective { view: pelts::view(&camera(), [PIXELS; 2]), supersampling: 1 };
+    let rays = Rays::Perspective { view: scenes::view(&camera(), [PIXELS; 2]), supersampling: 1 };
     for (i, a) in alpha.iter().enumerate() {
         let ray = rays.ray(i % PIXELS, i / PIXELS, 0);
         let closest = EYE - ray.direction * EYE.dot(ray.direction);
@@ -43,11 +43,11 @@ fn rings(alpha: &[f32], height_m: f32) -> [f32; 5] {
 }
 
 fn camera() -> Camera {
-    pelts::looking(EYE, Vec3::ZERO, Vec3::Y, 18.0)
+    scenes::looking(EYE, Vec3::ZERO, Vec3::Y, 18.0)
 }
 
-fn view() -> View {
-    View {
+fn view() -> Frame {
+    Frame {
         clip_from_world: camera().clip_from_world(furrier::math::DVec3::ZERO, 1.0, 0.05, 1.0).as_mat4(),
         eye: Vec4::from((EYE, 1.0)),
         size: [PIXELS as u32; 2],
@@ -87,7 +87,7 @@ fn measured(gpu: &Gpu, fibres: [&Fibre; 2], lean_rad: f32, shows: &[Show]) -> ([
     };
     let [guard, undercoat] = [0, 1].map(|i| grow::skin::grow(fibres[i], &mesh, &fields, 3 + i as u64));
     let scene = Geometry { guard: Some(&guard), undercoat: Some(&undercoat), skin: Some(&mesh), ..Default::default() };
-    let rays = Rays::Perspective { view: pelts::view(&camera(), [PIXELS; 2]), supersampling: 3 };
+    let rays = Rays::Perspective { view: scenes::view(&camera(), [PIXELS; 2]), supersampling: 3 };
     let strands = rings(&Caster::new(scene).render(&rays, DepthRange::ALL).alpha, height_m);
     let renderer = Renderer::new(gpu, &tiles, 2).unwrap();
     let ours = shows.iter().map(|&show| {

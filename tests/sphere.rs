@@ -1,7 +1,7 @@
 //! From a mesh and a preset to a picture, against the same coat grown hair by hair: `sample:sphere`, one camera.
 
 use furrier::asset::coat::{Fallback, read_coat};
-use furrier::bake::picture::{Grown, Only, Scene as Depicted};
+use furrier::bake::picture::{Grown, Only, PictureRequest};
 use furrier::bake::units::Units;
 use furrier::bake::{Method, Request, bake};
 use furrier::cast::Caster;
@@ -53,12 +53,12 @@ fn request(preset: Preset, out: &std::path::Path) -> Request {
 }
 
 fn camera() -> Camera {
-    crate::pelts::looking(EYE, Vec3::ZERO, Vec3::Y, 20.0)
+    crate::scenes::looking(EYE, Vec3::ZERO, Vec3::Y, 20.0)
 }
 
 /// Mean alpha in the ring of `width_m` around the skin's outline.
 fn ring(alpha: &[f32], width_m: f32) -> f32 {
-    let rays = Rays::Perspective { view: crate::pelts::view(&camera(), [PIXELS; 2]), supersampling: 1 };
+    let rays = Rays::Perspective { view: crate::scenes::view(&camera(), [PIXELS; 2]), supersampling: 1 };
     let (mut sum, mut count) = (0.0, 0.0);
     for (i, a) in alpha.iter().enumerate() {
         let ray = rays.ray(i % PIXELS, i / PIXELS, 0);
@@ -85,7 +85,7 @@ fn drawn(preset: &Preset, show: Show, width_m: f32) -> f32 {
 
 /// Ring coverage of the same coat grown on the sphere, hair by hair.
 fn strands(preset: &Preset, width_m: f32) -> f32 {
-    let grown = Grown::new(&Depicted {
+    let grown = Grown::new(&PictureRequest {
         input: "sample:sphere".into(),
         preset: preset.clone(),
         materials: vec![],
@@ -95,12 +95,12 @@ fn strands(preset: &Preset, width_m: f32) -> f32 {
         pose: None,
     })
     .unwrap();
-    let pelt = grown.pelt();
-    let fibre = Fibre::undercoat(&preset.undercoat, &preset.colour, pelt.skin.diagonal_m());
-    let undercoat = grow::skin::grow(&fibre, pelt.skin, pelt.fields, 9);
-    let guard = pelt.guard.map(|(strands, _)| strands);
-    let scene = Geometry { guard, undercoat: Some(&undercoat), skin: Some(pelt.skin), ..Geometry::default() };
-    let rays = Rays::Perspective { view: crate::pelts::view(&camera(), [PIXELS; 2]), supersampling: 2 };
+    let scene = grown.scene();
+    let fibre = Fibre::undercoat(&preset.undercoat, &preset.colour, scene.skin.diagonal_m());
+    let undercoat = grow::skin::grow(&fibre, scene.skin, scene.fields, 9);
+    let guard = scene.guard.map(|(strands, _)| strands);
+    let scene = Geometry { guard, undercoat: Some(&undercoat), skin: Some(scene.skin), ..Geometry::default() };
+    let rays = Rays::Perspective { view: crate::scenes::view(&camera(), [PIXELS; 2]), supersampling: 2 };
     ring(&Caster::new(scene).render(&rays, DepthRange::ALL).alpha, width_m)
 }
 

@@ -1,6 +1,6 @@
 //! Fewer, wider hairs stand for many thin ones.
 
-use crate::pelts::{self, Grown};
+use crate::scenes::{self, Grown};
 use furrier::data::film::Film;
 use furrier::hybrid::strands::thin::Thinning;
 use furrier::hybrid::{Settings, draw};
@@ -10,14 +10,14 @@ use furrier::metrics::compare::{Light, compare};
 const SIZE: [usize; 2] = [64, 64];
 
 fn dense() -> Grown {
-    let (mut guard, mut undercoat) = pelts::mink();
+    let (mut guard, mut undercoat) = scenes::mink();
     guard.density_per_cm2 = 200.0;
     undercoat.density_per_cm2 = 4000.0;
-    Grown::new(pelts::bent_pelt(1), &guard, &undercoat, Vec3::X, 35.0, 3)
+    Grown::new(scenes::bent_skin(1), &guard, &undercoat, Vec3::X, 35.0, 3)
 }
 
 fn film(grown: &Grown, settings: &Settings) -> Film {
-    draw(&grown.pelt(), &pelts::studio(), &pelts::camera(0.35), settings).unwrap().film
+    draw(&grown.scene(), &scenes::studio(), &scenes::camera(0.35), settings).unwrap().film
 }
 
 /// All hairs, and a third of them, of which each is drawn `error` times as wide as it should be.
@@ -25,7 +25,7 @@ pub fn whole_and_thinned(error: f32) -> (Film, Film) {
     let mut grown = dense();
     let settings = Settings { size: SIZE, ..Settings::default() };
     let whole = film(&grown, &settings);
-    let view = pelts::view(&pelts::camera(0.35), SIZE);
+    let view = scenes::view(&scenes::camera(0.35), SIZE);
     let mut left = Thinning::new(&view, 0.5).of(&grown.guard).unwrap();
     assert!(left.len() * 2 < grown.guard.len(), "{} of {} hairs are left", left.len(), grown.guard.len());
     left.root_radius_m.iter_mut().for_each(|r| *r *= error);
@@ -55,7 +55,7 @@ fn a_picture_draws_the_hairs_that_are_left() {
     let mut grown = dense();
     let settings = Settings { size: SIZE, hair_px: 0.5, ..Settings::default() };
     let at_once = film(&grown, &settings);
-    grown.guard = Thinning::new(&pelts::view(&pelts::camera(0.35), SIZE), 0.5).of(&grown.guard).unwrap();
+    grown.guard = Thinning::new(&scenes::view(&scenes::camera(0.35), SIZE), 0.5).of(&grown.guard).unwrap();
     assert_eq!(at_once, film(&grown, &Settings { hair_px: 0.0, ..settings }));
 }
 
@@ -64,8 +64,8 @@ fn hairs_come_and_go_slowly_and_keep_their_whole_width() {
     let grown = dense();
     let mut before: Option<Vec<f32>> = None;
     for step in 0..60 {
-        let camera = pelts::camera(0.2 * 1.01_f32.powi(step * 4));
-        let thinning = Thinning::new(&pelts::view(&camera, SIZE), 0.5);
+        let camera = scenes::camera(0.2 * 1.01_f32.powi(step * 4));
+        let thinning = Thinning::new(&scenes::view(&camera, SIZE), 0.5);
         let widths: Vec<f32> = (0..grown.guard.len()).map(|i| thinning.widening(&grown.guard, i)).collect();
         let mean = widths.iter().sum::<f32>() / widths.len() as f32;
         assert!((mean - 1.0).abs() < 0.01, "hairs are {mean} as wide in the mean");
@@ -84,7 +84,7 @@ fn hairs_come_and_go_slowly_and_keep_their_whole_width() {
 #[test]
 fn hair_as_wide_as_pixels_show_is_drawn_as_it_is() {
     let grown = dense();
-    let thinning = Thinning::new(&pelts::view(&pelts::camera(0.35), SIZE), 1e-4);
+    let thinning = Thinning::new(&scenes::view(&scenes::camera(0.35), SIZE), 1e-4);
     assert!((0..grown.guard.len()).all(|i| thinning.widening(&grown.guard, i) == 1.0));
-    assert!(Thinning::new(&pelts::view(&pelts::camera(0.35), SIZE), 0.0).of(&grown.guard).is_none());
+    assert!(Thinning::new(&scenes::view(&scenes::camera(0.35), SIZE), 0.0).of(&grown.guard).is_none());
 }

@@ -6,13 +6,13 @@ use furrier::gpu::{Choice, Gpu};
 use furrier::math::{Mat2, Mat3, Mat4, Vec2, Vec3, Vec4};
 use furrier::runtime::cpu::{self, Stack};
 use furrier::runtime::gpu::Renderer;
-use furrier::runtime::{Picture, Show, View};
+use furrier::runtime::{Frame, Picture, Show};
 
 const PIXELS: u32 = 128;
 const SHELLS: Show = Show { skin: false, shells: true, fins: false };
 
 /// Parallel rays along `direction` through the texels of one tile on the plane z = 0, one pixel each.
-fn oblique(direction: Vec3, edge_m: f32) -> View {
+fn oblique(direction: Vec3, edge_m: f32) -> Frame {
     let slope = direction / direction.z;
     let scale = 2.0 / edge_m;
     let clip = Mat4::from_cols(
@@ -21,7 +21,7 @@ fn oblique(direction: Vec3, edge_m: f32) -> View {
         Vec4::new(-slope.x * scale, -slope.y * scale, -1.0, 0.0),
         Vec4::new(0.0, 0.0, 0.5, 1.0),
     );
-    View {
+    Frame {
         clip_from_world: clip,
         eye: Vec4::from((-direction, 0.0)),
         size: [PIXELS; 2],

@@ -1,6 +1,6 @@
 //! Undercoat as a volume against the same hairs one by one: random cylinders, met by parallel rays.
 
-use crate::pelts;
+use crate::scenes;
 use furrier::data::fields::Fields;
 use furrier::data::mesh::Mesh;
 use furrier::data::ray::DepthRange;
@@ -14,7 +14,7 @@ use furrier::volume::march::content::{Content, Resolution};
 use furrier::volume::march::volume::Volume;
 use furrier::volume::march::{Start, Stepping};
 use furrier::volume::medium::Medium;
-use furrier::volume::pelt::{Hair, Pelt};
+use furrier::volume::scene::{HairScattering, Scene};
 use furrier::volume::shell::prism::Place;
 use furrier::volume::shell::subelement;
 
@@ -94,9 +94,9 @@ fn meets(hairs: &Cylinders, through: DVec3, direction: DVec3) -> bool {
     enter <= leave
 }
 
-/// A level pelt large enough that no ray leaves it sideways.
+/// A level scene large enough that no ray leaves it sideways.
 pub fn level(edge_m: f32) -> Mesh {
-    pelts::grid(8, 8, |u, v| Vec3::new(u - 0.5, v - 0.5, 0.0) * edge_m)
+    scenes::grid(8, 8, |u, v| Vec3::new(u - 0.5, v - 0.5, 0.0) * edge_m)
 }
 
 /// Hair like the cylinders.
@@ -111,8 +111,8 @@ fn fibre(hairs: &Cylinders) -> Fibre {
     }
 }
 
-/// A level pelt of undercoat like the cylinders.
-pub fn on_level_skin<T>(hairs: &Cylinders, with: impl FnOnce(&Pelt<'_>) -> T) -> T {
+/// A level scene of undercoat like the cylinders.
+pub fn on_level_skin<T>(hairs: &Cylinders, with: impl FnOnce(&Scene<'_>) -> T) -> T {
     let mesh = level((hairs.length_m * 60.0) as f32);
     let n = mesh.positions_m.len();
     let fields = Fields {
@@ -124,19 +124,19 @@ pub fn on_level_skin<T>(hairs: &Cylinders, with: impl FnOnce(&Pelt<'_>) -> T) ->
         tint: vec![Vec3::ONE; n],
     };
     let fibre = fibre(hairs);
-    with(&Pelt {
+    with(&Scene {
         skin: &mesh,
         fields: &fields,
         skin_factor: Vec3::ONE,
         guard: None,
         undercoat: Some(&fibre),
-        hair: Hair::default(),
+        scattering: HairScattering::default(),
     })
 }
 
 /// Optical depth of the volume that stands for the cylinders, along a ray through the middle of its top.
 pub fn depth_of_volume(hairs: &Cylinders, direction: DVec3) -> f64 {
-    on_level_skin(hairs, |pelt| depth_of_pelt(pelt, direction))
+    on_level_skin(hairs, |scene| depth_of_scene(scene, direction))
 }
 
 /// The same of a square's undercoat, as a tile has it.
@@ -149,12 +149,12 @@ pub fn depth_of_square(hairs: &Cylinders, direction: DVec3) -> f64 {
     f64::from(medium.depth_along(&ray, DepthRange::ALL, f32::INFINITY))
 }
 
-fn depth_of_pelt(pelt: &Pelt<'_>, direction: DVec3) -> f64 {
-    let mesh = pelt.skin;
+fn depth_of_scene(scene: &Scene<'_>, direction: DVec3) -> f64 {
+    let mesh = scene.skin;
     let normals = mesh.smooth_normals();
     let subdivisions = vec![3; mesh.triangles.len()];
     let resolution = Resolution { pattern: None, ..Resolution::default() };
-    let content = Content::new(pelt, &normals, resolution).unwrap();
+    let content = Content::new(scene, &normals, resolution).unwrap();
     let volume = Volume::new(&content, subdivisions);
     // A triangle near the middle, entered at its top.
     let triangle = mesh.triangles.len() as u32 / 2 + 8;

@@ -145,7 +145,7 @@ fn a_report_says_what_was_drawn() {
     }
     let furred: u64 = coat.primitives.iter().map(|p| p.triangles.len() as u64).sum();
     let all: u64 = asset.parts.iter().map(|p| p.stored.triangles.len() as u64).sum();
-    // Skin once, three slabs from either side.
+    // SkinMesh once, three slabs from either side.
     assert_eq!(report.counts["triangles"], all + 6 * furred);
     assert!(!report.device.is_empty() && report.total_ms > 0.0);
 }

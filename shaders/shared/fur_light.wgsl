@@ -1,4 +1,4 @@
-// How hair scatters, and how hair above a point shadows it: src/shade/ and src/volume/pelt.rs.
+// How hair scatters, and how hair above a point shadows it: src/shade/ and src/volume/scene.rs.
 #define_import_path furrier::fur_light
 
 #import furrier::scene::{scene, Kind}

@@ -18,7 +18,7 @@ fn skin_look(triangle: u32, b: vec3<f32>, direction: vec3<f32>) -> SkinLook {
     let normal = select(outside, -outside, back);
     let lean = lean_at(triangle, b, normal);
     let albedo = tint_at(triangle, b) * scene.skin_factor;
-    // The back of a pelt is bare.
+    // The back of the skin is bare.
     let above = select(above_both(density_at(triangle, b), length_at(triangle, b), 0.0), 0.0, back);
     var radiance = scene.ambient * albedo * exp(-sky_depth(above));
     for (var i = 0u; i < scene.light_count; i++) {

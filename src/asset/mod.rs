@@ -19,7 +19,7 @@ pub mod pose;
 pub mod primitive;
 mod repair;
 pub mod sample;
-pub mod scene;
+pub mod scene_graph;
 mod select;
 pub mod strands;
 mod uri;
@@ -33,7 +33,7 @@ pub use pose::{Pose, Posed};
 pub use select::{is_bare, select};
 
 use crate::error::Result;
-use scene::Scene;
+use scene_graph::SceneGraph;
 use std::path::Path;
 
 /// An input, read and checked.
@@ -42,7 +42,7 @@ pub struct Asset {
     /// The file.
     pub document: Document,
     /// Nodes and skins.
-    pub scene: Scene,
+    pub scene: SceneGraph,
     /// What fur can grow on.
     pub parts: Vec<Part>,
     /// Diagonal of the default scene's bounding box in the rest pose, file units.
@@ -80,7 +80,7 @@ impl Asset {
     /// # Errors
     /// Names what cannot be used.
     pub fn new(mut document: Document, warnings: Vec<String>) -> Result<Self> {
-        let scene = Scene::of(&document)?;
+        let scene = SceneGraph::of(&document)?;
         let mut notes = repair::Notes { warnings, mended: Vec::new() };
         let (parts, diagonal_units) = part::collect(&document, &scene, &mut notes)?;
         repair::apply(&mut document, &mut notes)?;

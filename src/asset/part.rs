@@ -4,7 +4,7 @@ use super::document::Document;
 use super::material::BaseColour;
 use super::primitive::Primitive;
 use super::repair::Notes;
-use super::scene::Scene;
+use super::scene_graph::SceneGraph;
 use crate::data::mesh::Mesh;
 use crate::error::{Error, Result};
 use crate::math::{DAffine3, DMat3, DMat4, DVec3, Vec3};
@@ -39,13 +39,13 @@ impl Part {
     ///
     /// # Errors
     /// Names the node or joint whose matrix flattens the mesh.
-    pub(super) fn place(mut self, scene: &Scene, world: &[DMat4]) -> Result<Self> {
+    pub(super) fn place(mut self, scene: &SceneGraph, world: &[DMat4]) -> Result<Self> {
         self.world_from_local = self.placement(scene, world, self.nodes[0], &self.stored)?;
         Ok(self)
     }
 
     /// Per vertex, or once for all: the affine map from the primitive's space to the world.
-    fn placement(&self, scene: &Scene, world: &[DMat4], node: usize, stored: &Primitive) -> Result<Vec<DAffine3>> {
+    fn placement(&self, scene: &SceneGraph, world: &[DMat4], node: usize, stored: &Primitive) -> Result<Vec<DAffine3>> {
         let (Some(skin), Some(influences)) = (self.skin, &stored.influences) else {
             scene.check_invertible(node, &world[node])?;
             return Ok(vec![DAffine3::from_mat4(world[node])]);
@@ -153,7 +153,7 @@ pub(super) fn world_normal(map: &DMat3, normal: Vec3) -> Vec3 {
 ///
 /// # Errors
 /// Names what cannot be used; also when there is no triangle at all.
-pub fn collect(document: &Document, scene: &Scene, notes: &mut Notes) -> Result<(Vec<Part>, f64)> {
+pub fn collect(document: &Document, scene: &SceneGraph, notes: &mut Notes) -> Result<(Vec<Part>, f64)> {
     let root = document.root();
     let nodes = root.list("nodes")?;
     let world = scene.world(&scene.local);

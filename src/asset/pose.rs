@@ -4,7 +4,7 @@ use super::Asset;
 use super::document::Document;
 use super::json::At;
 use super::part::{Part, world_normal};
-use super::scene::{Local, unit};
+use super::scene_graph::{Local, unit};
 use crate::error::{Error, Result};
 use crate::math::{DMat3, DMat4, DQuat, DVec3, Mat3, Vec3};
 

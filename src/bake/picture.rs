@@ -15,7 +15,7 @@ use crate::hybrid::{self, Picture, Settings};
 use crate::math::{DVec3, Vec3};
 use crate::preset::Preset;
 use crate::reference;
-use crate::volume::pelt::{Hair, Lighting, Pelt};
+use crate::volume::scene::{HairScattering, Lighting, Scene};
 use std::f32::consts::PI;
 
 /// Vertical field of view of cameras that frame, degrees.
@@ -34,7 +34,7 @@ pub enum Only {
 
 /// What to depict.
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub struct PictureRequest {
     /// A file, or `sample:NAME`.
     pub input: String,
     /// Preset of all furred materials.
@@ -65,18 +65,18 @@ pub struct Grown {
 }
 
 impl Grown {
-    /// Reads, grooms and grows a scene. All parts become one skin; those without fur are bare.
+    /// Reads, grooms and grows a request. All parts become one skin; those without fur are bare.
     ///
     /// # Errors
     /// When the input cannot be used or names something that is not there.
-    pub fn new(scene: &Scene) -> Result<Self> {
-        let asset = asset::load(&scene.input)?;
-        let chosen = asset::select(&asset.parts, &scene.materials)?;
-        let preset = &scene.preset;
-        let scale = units::scale(scene.units, preset, &asset, scene.input.starts_with("sample:"))?;
+    pub fn new(request: &PictureRequest) -> Result<Self> {
+        let asset = asset::load(&request.input)?;
+        let chosen = asset::select(&asset.parts, &request.materials)?;
+        let preset = &request.preset;
+        let scale = units::scale(request.units, preset, &asset, request.input.starts_with("sample:"))?;
         let mut notes = asset.warnings.clone();
         notes.extend(scale.note.clone());
-        let pose = match &scene.pose {
+        let pose = match &request.pose {
             Some((animation, seconds)) => {
                 let index = asset.animation(animation).map_err(|e| e.with_field("--pose"))?;
                 Some(asset.pose(index, *seconds)?)
@@ -101,12 +101,12 @@ impl Grown {
         let groomed = all.unwrap_or_else(|| unreachable!("an asset without parts is refused when it is read"));
         let diagonal_m = scale.diagonal_m as f32;
         let fibre = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
-        let strands = grow::skin::grow(&fibre, &groomed.mesh, &groomed.fields, scene.seed);
+        let strands = grow::skin::grow(&fibre, &groomed.mesh, &groomed.fields, request.seed);
         Ok(Self {
             guard: (strands, fibre),
             undercoat: Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m),
             skin_factor: Vec3::from(preset.colour.skin),
-            only: scene.only,
+            only: request.only,
             metres_per_unit: scale.metres_per_unit,
             groomed,
             notes,
@@ -124,14 +124,14 @@ impl Grown {
     }
 
     /// What the renderer needs.
-    pub fn pelt(&self) -> Pelt<'_> {
-        Pelt {
+    pub fn scene(&self) -> Scene<'_> {
+        Scene {
             skin: &self.groomed.mesh,
             fields: &self.groomed.fields,
             skin_factor: self.skin_factor,
             guard: (self.only != Only::Undercoat).then_some((&self.guard.0, &self.guard.1)),
             undercoat: (self.only != Only::Guard).then_some(&self.undercoat),
-            hair: Hair::default(),
+            scattering: HairScattering::default(),
         }
     }
 
@@ -140,7 +140,7 @@ impl Grown {
     /// # Errors
     /// As [`hybrid::draw`].
     pub fn draw(&self, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Picture> {
-        hybrid::draw(&self.pelt(), lighting, camera, settings)
+        hybrid::draw(&self.scene(), lighting, camera, settings)
     }
 
     /// Renders a picture on a device.
@@ -148,7 +148,7 @@ impl Grown {
     /// # Errors
     /// As [`device::draw`].
     pub fn draw_on(&self, device: &Device, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Drawn> {
-        device::draw(device, &hybrid::prepare(&self.pelt(), lighting, settings)?, camera)
+        device::draw(device, &hybrid::prepare(&self.scene(), lighting, settings)?, camera)
     }
 
     /// Renders what [`Self::draw`] should have drawn, slowly.
@@ -156,7 +156,7 @@ impl Grown {
     /// # Errors
     /// As [`reference::draw`].
     pub fn reference(&self, lighting: &Lighting, camera: &Camera, settings: &reference::Settings) -> Result<Film> {
-        reference::draw(&self.pelt(), lighting, camera, settings)
+        reference::draw(&self.scene(), lighting, camera, settings)
     }
 
     /// A camera at an azimuth and elevation that frames skin and hair; `distance` 1 fills the picture's height or width.

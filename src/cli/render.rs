@@ -4,7 +4,7 @@ use super::bake::UnitName;
 use super::console::Console;
 use super::output;
 use crate::asset::strands;
-use crate::bake::picture::{Grown, Only, Scene, studio};
+use crate::bake::picture::{Grown, Only, PictureRequest, studio};
 use crate::data::camera::Camera;
 use crate::data::film::Layers;
 use crate::error::{Error, Result};
@@ -20,7 +20,7 @@ use crate::stage::environment::Environment;
 use crate::stage::projection::View;
 use crate::stage::tone::{Development, develop};
 use crate::viewer;
-use crate::volume::pelt::Lighting;
+use crate::volume::scene::Lighting;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -167,7 +167,7 @@ impl Render {
         }
         let size = super::view::size(&self.size)?.map(|n| n as usize);
         let device = self.device.parse::<Device>()?;
-        let grown = Grown::new(&self.scene()?)?;
+        let grown = Grown::new(&self.request()?)?;
         grown.notes.iter().for_each(|note| console.note(note));
         let camera = self.camera(&grown, size)?;
         let lighting = self.lighting(&camera)?;
@@ -209,8 +209,8 @@ impl Render {
         })
     }
 
-    fn scene(&self) -> Result<Scene> {
-        Ok(Scene {
+    fn request(&self) -> Result<PictureRequest> {
+        Ok(PictureRequest {
             input: self.input.clone(),
             preset: Preset::load(&self.preset)?.with_settings(&self.settings)?,
             materials: self.materials.clone(),

@@ -4,7 +4,7 @@ use super::bake::UnitName;
 use super::console::Console;
 use super::output;
 use crate::asset::write;
-use crate::bake::picture::{Grown, Only, Scene};
+use crate::bake::picture::{Grown, Only, PictureRequest};
 use crate::error::{Error, Result};
 use crate::metrics::compare::load;
 use crate::preset::Preset;
@@ -95,7 +95,7 @@ impl Render {
         let size = super::view::size(&self.size)?.map(|n| n as usize);
         let load_named = |path: &PathBuf| -> Result<_> { Ok((path.display().to_string(), load(path)?)) };
         let reference = self.reference.as_ref().map(load_named).transpose()?;
-        let grown = Grown::new(&Scene {
+        let grown = Grown::new(&PictureRequest {
             input: self.input.clone(),
             preset: Preset::load(&self.preset)?.with_settings(&self.settings)?,
             materials: Vec::new(),

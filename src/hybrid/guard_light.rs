@@ -10,7 +10,7 @@ use crate::shade::{Angles, shadow_power};
 use crate::volume::march::content::Content;
 use crate::volume::march::shadows::Shadows;
 use crate::volume::mean::MeanShadow;
-use crate::volume::pelt::{Layer, ramps, sky_depths, slant_depths, terminator, terminators, through};
+use crate::volume::scene::{Layer, ramps, sky_depths, slant_depths, terminator, terminators, through};
 use crate::volume::shell::lattice::Lattices;
 use rayon::prelude::*;
 
@@ -75,11 +75,11 @@ impl<'a> GuardShader<'a> {
         shadows: Option<&'a Shadows<'a>>,
         eye_m: Vec3,
     ) -> Self {
-        let pelt = &prepared.scene;
-        let p = &pelt.hair.guard;
+        let scene = &prepared.scene;
+        let p = &scene.scattering.guard;
         let albedo_share = (p.tt.albedo + p.trt.albedo + p.diffuse) as f32;
         let layer = |fibre| Layer::new(fibre, 1.0, 1.0);
-        let layers = [pelt.guard.map(|(_, fibre)| layer(fibre)), pelt.undercoat.map(layer)];
+        let layers = [scene.guard.map(|(_, fibre)| layer(fibre)), scene.undercoat.map(layer)];
         let top_m = layers.iter().flatten().map(|l| l.height_m + 5.0 * l.spread_m).fold(f32::MIN_POSITIVE, f32::max);
         let above = Table::new(|x| layers.iter().flatten().map(|layer| layer.above(x * top_m)).sum());
         let last = (strands.points_per_strand - 1) as f32;
@@ -118,15 +118,15 @@ impl<'a> GuardShader<'a> {
 
     #[inline(always)]
     fn strand<I: Isa>(&self, strand: usize) -> Vec3Row {
-        let (strands, pelt) = (self.strands, &self.prepared.scene);
+        let (strands, scene) = (self.strands, &self.prepared.scene);
         let root = strands.roots[strand];
-        let corners = pelt.skin.triangles[root.triangle as usize].map(|v| v as usize);
+        let corners = scene.skin.triangles[root.triangle as usize].map(|v| v as usize);
         let b = Vec3::new(root.barycentric[0], root.barycentric[1], 1.0 - root.barycentric[0] - root.barycentric[1]);
         let mix3 = |values: &[Vec3]| values[corners[0]] * b.x + values[corners[1]] * b.y + values[corners[2]] * b.z;
         let mix1 = |values: &[f32]| values[corners[0]] * b.x + values[corners[1]] * b.y + values[corners[2]] * b.z;
         let normal = mix3(&self.prepared.normals).normalize_or(Vec3::Y);
-        let lean = mix3(&pelt.fields.lean).normalize_or(normal);
-        let (density, length) = (mix1(&pelt.fields.density), mix1(&pelt.fields.length));
+        let lean = mix3(&scene.fields.lean).normalize_or(normal);
+        let (density, length) = (mix1(&scene.fields.density), mix1(&scene.fields.length));
         let factor = density * length;
         // Height along the lean, so that a leaning coat's layers are as thick as its hairs are long.
         let rise = lean.dot(normal).max(0.05);

@@ -23,13 +23,13 @@ pub use settings::{MOST_HALVINGS, Settings};
 
 use crate::data::camera::Camera;
 use crate::error::Result;
-use crate::volume::pelt::{Lighting, Pelt};
+use crate::volume::scene::{Lighting, Scene};
 
 /// Draws one picture on the CPU: [`prepare`] and [`Prepared::draw`] in one, and the steps of both.
 ///
 /// # Errors
 /// As those.
-pub fn draw(scene: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Picture> {
+pub fn draw(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Picture> {
     prepare(scene, lighting, settings)?.draw_alone(camera)
 }
 

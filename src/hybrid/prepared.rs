@@ -9,14 +9,14 @@ use crate::stage::projection::View;
 use crate::volume::march::content::Content;
 use crate::volume::march::volume::{Volume, splits};
 use crate::volume::mean::MeanShadow;
-use crate::volume::pelt::{Lighting, Pelt};
+use crate::volume::scene::{Lighting, Scene};
 use std::time::Instant;
 
 /// Skin, hair and lights made ready to be drawn through any camera. Densities and shadows are filled where the first picture needs
 /// them.
 pub struct Prepared<'a> {
     /// What is drawn.
-    pub scene: Pelt<'a>,
+    pub scene: Scene<'a>,
     /// What lights it.
     pub lighting: &'a Lighting,
     /// How it is drawn.
@@ -37,9 +37,9 @@ pub struct Prepared<'a> {
 ///
 /// # Errors
 /// Names a scattering parameter out of range.
-pub fn prepare<'a>(scene: &Pelt<'a>, lighting: &'a Lighting, settings: &Settings) -> Result<Prepared<'a>> {
+pub fn prepare<'a>(scene: &Scene<'a>, lighting: &'a Lighting, settings: &Settings) -> Result<Prepared<'a>> {
     let start = Instant::now();
-    let lobes = Lobes::new(&scene.hair.guard)?;
+    let lobes = Lobes::new(&scene.scattering.guard)?;
     let normals = scene.skin.smooth_normals();
     let (content, mean) = rayon::join(
         || Content::new(scene, &normals, settings.resolution),
@@ -60,19 +60,19 @@ impl Prepared<'_> {
 
 /// Subdivisions d per triangle: sub-elements about as large in pixels as asked for, or as finely as clumps need it where
 /// that can be stored, but no finer than what there is to see.
-fn subdivisions(pelt: &Pelt<'_>, content: &Content<'_>, view: &View, settings: &Settings) -> Vec<u8> {
+fn subdivisions(scene: &Scene<'_>, content: &Content<'_>, view: &View, settings: &Settings) -> Vec<u8> {
     let resolution = &settings.resolution;
     let focal_px = view.focal_px / settings.edge_samples() as f32;
     let detail_m = content.shell.undercoat.detail_m();
     let most = resolution.most_subdivisions.min(10);
     let all = |coarsest_m: f32| -> Vec<u8> {
         let of = |t| {
-            let nearest_m = pelt.skin.corners_m(t).map(|p| view.camera_from_world(p).z);
+            let nearest_m = scene.skin.corners_m(t).map(|p| view.camera_from_world(p).z);
             let nearest_m = nearest_m.into_iter().fold(f32::INFINITY, f32::min);
             let wanted_m = resolution.subelement_px * nearest_m.max(view.near_m) / focal_px;
-            splits(pelt.skin.mean_edge_m(t), wanted_m.min(coarsest_m).max(detail_m)).min(most) as u8
+            splits(scene.skin.mean_edge_m(t), wanted_m.min(coarsest_m).max(detail_m)).min(most) as u8
         };
-        (0..pelt.skin.triangles.len()).map(of).collect()
+        (0..scene.skin.triangles.len()).map(of).collect()
     };
     let fine = all(resolution.coarsest_details * detail_m);
     let bytes = fine.iter().map(|&d| 1_usize << (2 * d)).sum::<usize>() * resolution.layers as usize;

@@ -7,7 +7,7 @@ use crate::math::Vec3;
 use crate::math::fast::exp_negative;
 use crate::stage::projection::View;
 use crate::volume::bins::TILE;
-use crate::volume::pelt::{Layer, sky_depth, slant_depth, terminator};
+use crate::volume::scene::{Layer, sky_depth, slant_depth, terminator};
 use std::f32::consts::FRAC_1_PI;
 
 /// No triangle.
@@ -61,19 +61,19 @@ impl SkinTile {
 
 /// What skin looks like where a ray from the eye along `direction` meets triangle `t`: diffuse, under all of its hair.
 pub fn shade(prepared: &Prepared<'_>, t: u32, barycentric: Vec3, direction: Vec3, z_m: f32) -> Face {
-    let Prepared { scene: pelt, lighting, normals, mean, .. } = prepared;
-    let corners = pelt.skin.triangles[t as usize].map(|v| v as usize);
+    let Prepared { scene, lighting, normals, mean, .. } = prepared;
+    let corners = scene.skin.triangles[t as usize].map(|v| v as usize);
     let b = barycentric;
     let mix3 = |values: &[Vec3]| values[corners[0]] * b.x + values[corners[1]] * b.y + values[corners[2]] * b.z;
     let mix1 = |values: &[f32]| values[corners[0]] * b.x + values[corners[1]] * b.y + values[corners[2]] * b.z;
     let outside = mix3(normals).normalize_or(Vec3::Y);
     let back = direction.dot(outside) > 0.0;
     let normal = if back { -outside } else { outside };
-    let lean = mix3(&pelt.fields.lean).normalize_or(normal);
-    let albedo = mix3(&pelt.fields.tint) * pelt.skin_factor;
-    let (density, length) = (mix1(&pelt.fields.density), mix1(&pelt.fields.length));
-    let kinds = [pelt.guard.map(|(_, fibre)| fibre), pelt.undercoat];
-    // The back of a pelt is bare.
+    let lean = mix3(&scene.fields.lean).normalize_or(normal);
+    let albedo = mix3(&scene.fields.tint) * scene.skin_factor;
+    let (density, length) = (mix1(&scene.fields.density), mix1(&scene.fields.length));
+    let kinds = [scene.guard.map(|(_, fibre)| fibre), scene.undercoat];
+    // The back of a scene is bare.
     let above: f32 =
         if back { 0.0 } else { kinds.iter().flatten().map(|f| Layer::new(f, density, length).above(0.0)).sum() };
     let mut radiance = lighting.ambient * albedo * exp_negative(-sky_depth(above));

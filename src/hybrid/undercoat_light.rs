@@ -7,7 +7,7 @@ use crate::shade::kajiya_kay::KajiyaKay;
 use crate::shade::{Angles, shadow_power};
 use crate::volume::march::Steps;
 use crate::volume::march::content::Content;
-use crate::volume::pelt::{Lighting, Pelt, ramps, sky_depths, slant_depths, terminators, through};
+use crate::volume::scene::{Lighting, Scene, ramps, sky_depths, slant_depths, terminators, through};
 use crate::volume::shell::prisms::Prisms;
 
 /// Shades undercoat. Holds what does not change from step to step.
@@ -20,14 +20,14 @@ pub struct UndercoatShader<'a> {
 }
 
 impl<'a> UndercoatShader<'a> {
-    /// For a pelt's undercoat.
-    pub fn new(pelt: &Pelt<'_>, lighting: &'a Lighting) -> Self {
-        let hair = &pelt.hair;
+    /// For a scene's undercoat.
+    pub fn new(scene: &Scene<'_>, lighting: &'a Lighting) -> Self {
+        let hair = &scene.scattering;
         Self {
             lighting,
             scatter: KajiyaKay::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent),
             albedo_share: hair.undercoat_diffuse as f32,
-            ramp: pelt.undercoat.map_or([Vec3::ONE; 3], |fibre| fibre.profile.ramp),
+            ramp: scene.undercoat.map_or([Vec3::ONE; 3], |fibre| fibre.profile.ramp),
         }
     }
 

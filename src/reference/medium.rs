@@ -11,7 +11,7 @@ use crate::fur::groom::clump::Nearby;
 use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::lanes::MOST;
 use crate::math::{DVec3, Vec3};
-use crate::volume::pelt::Pelt;
+use crate::volume::scene::Scene;
 use crate::volume::shell::Shell;
 use std::cell::RefCell;
 
@@ -65,19 +65,19 @@ pub enum Counted {
 }
 
 impl<'a> Medium<'a> {
-    /// Of a pelt; none where nothing grows.
-    pub fn new(pelt: &Pelt<'a>, normals: &'a [Vec3], pattern: Option<Pattern>) -> Option<Self> {
-        let fibre = pelt.undercoat.or(pelt.guard.map(|(_, fibre)| fibre))?;
+    /// Of a scene; none where nothing grows.
+    pub fn new(scene: &Scene<'a>, normals: &'a [Vec3], pattern: Option<Pattern>) -> Option<Self> {
+        let fibre = scene.undercoat.or(scene.guard.map(|(_, fibre)| fibre))?;
         let undercoat = Undercoat::new(fibre, pattern);
         let height_m = f64::from(undercoat.height_m);
         if height_m <= 0.0 {
             return None;
         }
         let detail_m = f64::from(undercoat.detail_m()).min(SMOOTH * height_m);
-        let rest_normals = pelt.skin.rest_m.as_ref().map(|_| pelt.skin.at_rest().smooth_normals());
-        let shell = Shell::new(pelt.skin, pelt.fields, undercoat);
-        let undercoat = pelt.undercoat.map(|fibre| Kind::undercoat(fibre, height_m));
-        let guard = pelt.guard.map(|(_, fibre)| Kind::guard(fibre, height_m));
+        let rest_normals = scene.skin.rest_m.as_ref().map(|_| scene.skin.at_rest().smooth_normals());
+        let shell = Shell::new(scene.skin, scene.fields, undercoat);
+        let undercoat = scene.undercoat.map(|fibre| Kind::undercoat(fibre, height_m));
+        let guard = scene.guard.map(|(_, fibre)| Kind::guard(fibre, height_m));
         let top = guard.as_ref().map_or(1.0, |kind| kind.top.max(1.0));
         let [below, beyond] = SLABS;
         let mut heights: Vec<f64> = (0..=below).map(|i| i as f64 / below as f64).collect();
@@ -86,8 +86,8 @@ impl<'a> Medium<'a> {
         if top > 1.0 {
             heights.extend((1..=beyond).map(|i| 1.0 + (top - 1.0) * i as f64 / beyond as f64));
         }
-        let twice_area_m2 = (0..pelt.skin.triangles.len())
-            .map(|t| pelt.skin.rest_corners_m(t).map(|p| p.as_dvec3()))
+        let twice_area_m2 = (0..scene.skin.triangles.len())
+            .map(|t| scene.skin.rest_corners_m(t).map(|p| p.as_dvec3()))
             .map(|[a, b, c]| (b - a).cross(c - a).length())
             .collect();
         let slabs = Slabs::new(&shell, heights);

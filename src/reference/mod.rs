@@ -30,7 +30,7 @@ use crate::fur::undercoat::Pattern;
 use crate::math::DVec3;
 use crate::math::hash::{combine, unit_f64};
 use crate::stage::projection::View;
-use crate::volume::pelt::{Lighting, Pelt};
+use crate::volume::scene::{Lighting, Scene};
 use guard::Guard;
 use lens::Lens;
 use medium::Medium;
@@ -86,20 +86,20 @@ const LEAST: [f64; 2] = [2e-3, 0.01];
 ///
 /// # Errors
 /// Names what keeps the camera from looking anywhere, or a scattering parameter out of range.
-pub fn draw(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Film> {
-    let origin_m = pelt.skin.origin_m;
+pub fn draw(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Film> {
+    let origin_m = scene.skin.origin_m;
     View::new(camera, origin_m, settings.size)?;
-    let normals = pelt.skin.smooth_normals();
-    let skin = Skin::new(pelt.skin);
-    let guard = pelt.guard.map(|(strands, _)| Guard::new(strands, pelt.skin));
-    let medium = Medium::new(pelt, &normals, settings.pattern);
+    let normals = scene.skin.smooth_normals();
+    let skin = Skin::new(scene.skin);
+    let guard = scene.guard.map(|(strands, _)| Guard::new(strands, scene.skin));
+    let medium = Medium::new(scene, &normals, settings.pattern);
     let tracer = Tracer { skin: &skin, guard: guard.as_ref(), medium: medium.as_ref() };
-    let shader = Shader::new(pelt, lighting, &tracer, &normals)?;
-    let scene = Reference { tracer, shader, lens: Lens::new(camera, origin_m, settings.size) };
+    let shader = Shader::new(scene, lighting, &tracer, &normals)?;
+    let reference = Reference { tracer, shader, lens: Lens::new(camera, origin_m, settings.size) };
     let [width, height] = settings.size;
     let all = |key: u64, lines: &(dyn Fn(usize) -> usize + Sync)| -> Vec<Sum> {
         let pixel = |scratch: &mut Scratch, i: usize| {
-            scene.pixel([i % width, i / width], combine(key, i as u64), lines(i), scratch)
+            reference.pixel([i % width, i / width], combine(key, i as u64), lines(i), scratch)
         };
         (0..width * height).into_par_iter().with_max_len(64).map_init(Scratch::default, pixel).collect()
     };

@@ -1,4 +1,4 @@
-//! What a point of hair or skin sends to the eye, in f64: the formulas of `crate::shade` and `crate::volume::pelt`, with the
+//! What a point of hair or skin sends to the eye, in f64: the formulas of `crate::shade` and `crate::volume::scene`, with the
 //! key light's optical depth integrated anew for every point.
 
 use super::bvh::Ray;
@@ -13,7 +13,7 @@ use crate::math::{DVec3, Vec3};
 use crate::shade::kajiya_kay::KajiyaKay;
 use crate::shade::lobes::Lobes;
 use crate::shade::{Angles, shadow_power};
-use crate::volume::pelt::{Layer, Lighting, Pelt, sky_depth, slant_depth, terminator};
+use crate::volume::scene::{Layer, Lighting, Scene, sky_depth, slant_depth, terminator};
 use std::f64::consts::FRAC_1_PI;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -52,7 +52,7 @@ struct Site {
 
 /// Shades what rays find.
 pub struct Shader<'a> {
-    pelt: &'a Pelt<'a>,
+    scene: &'a Scene<'a>,
     lighting: &'a Lighting,
     medium: Option<&'a Medium<'a>>,
     guard: Option<&'a Guard<'a>>,
@@ -65,16 +65,16 @@ pub struct Shader<'a> {
 }
 
 impl<'a> Shader<'a> {
-    /// For a pelt.
+    /// For a scene.
     ///
     /// # Errors
     /// As [`Lobes::new`].
-    pub fn new(pelt: &'a Pelt<'a>, lighting: &'a Lighting, tracer: &Tracer<'a>, normals: &'a [Vec3]) -> Result<Self> {
-        let hair = &pelt.hair;
+    pub fn new(scene: &'a Scene<'a>, lighting: &'a Lighting, tracer: &Tracer<'a>, normals: &'a [Vec3]) -> Result<Self> {
+        let hair = &scene.scattering;
         let Tracer { skin, guard, medium } = *tracer;
         let heights = guard.map_or(0, |guard| guard.strands().len() * heights_of(guard.strands()));
         Ok(Self {
-            pelt,
+            scene,
             lighting,
             medium,
             skin,
@@ -89,13 +89,13 @@ impl<'a> Shader<'a> {
     /// Undercoat at a place, seen along `direction`.
     pub fn undercoat(&self, place: &ShellPoint, direction: DVec3) -> Look {
         let Some(medium) = self.medium else { return Look::default() };
-        let fields = self.pelt.fields;
-        let ramp = self.pelt.undercoat.map_or(Vec3::ONE, |fibre| fibre.profile.ramp_at(place.t as f32));
+        let fields = self.scene.fields;
+        let ramp = self.scene.undercoat.map_or(Vec3::ONE, |fibre| fibre.profile.ramp_at(place.t as f32));
         let albedo = medium.vector(&fields.tint, place) * ramp.as_dvec3();
         let hair = medium.hair(place);
         let height_m = place.t * self.height_m(place);
         let site = self.site(place, height_m, hair, self.key_depth(place));
-        let diffuse = albedo * self.pelt.hair.undercoat_diffuse;
+        let diffuse = albedo * self.scene.scattering.undercoat_diffuse;
         let scattered = |angles: Angles<f64>| {
             let (tinted, plain) = self.undercoat.scatter(angles);
             albedo * tinted + plain
@@ -123,7 +123,7 @@ impl<'a> Shader<'a> {
         let site = self.site(&foot, height_m, lean, self.hair_depth(strand, knot));
         let albedo =
             strands.tint[strand as usize].as_dvec3() * strands.profile.ramp_at(guard.s(knot) as f32).as_dvec3();
-        let p = &self.pelt.hair.guard;
+        let p = &self.scene.scattering.guard;
         let share = albedo * (p.tt.albedo + p.trt.albedo + p.diffuse);
         let scattered = |angles: Angles<f64>| {
             let s = self.lobes.scatter(angles);
@@ -139,8 +139,8 @@ impl<'a> Shader<'a> {
         let back = direction.dot(outside) > 0.0;
         let normal = if back { -outside } else { outside };
         let lean = self.lean(place);
-        let albedo = self.vector(&self.pelt.fields.tint, place) * self.pelt.skin_factor.as_dvec3();
-        // The back of a pelt is bare.
+        let albedo = self.vector(&self.scene.fields.tint, place) * self.scene.skin_factor.as_dvec3();
+        // The back of a scene is bare.
         let site = if back {
             Site { normal, lean, above: 0.0, key_depth: 0.0 }
         } else {
@@ -195,11 +195,11 @@ impl<'a> Shader<'a> {
 
     /// What stands around hair over a place, `height_m` above the skin.
     fn site(&self, place: &ShellPoint, height_m: f64, lean: DVec3, key_depth: f64) -> Site {
-        let fields = self.pelt.fields;
+        let fields = self.scene.fields;
         let (density, length) = (self.scalar(&fields.density, place) as f32, self.scalar(&fields.length, place) as f32);
         let above = |fibre| Layer::new(fibre, density, length).above(height_m as f32);
-        let own = self.pelt.undercoat.map_or(0.0, above);
-        let guard = self.pelt.guard.map_or(0.0, |(_, fibre)| above(fibre));
+        let own = self.scene.undercoat.map_or(0.0, above);
+        let guard = self.scene.guard.map_or(0.0, |(_, fibre)| above(fibre));
         Site { normal: self.normal(place), lean, above: own + guard, key_depth }
     }
 
@@ -263,7 +263,7 @@ impl<'a> Shader<'a> {
     }
 
     fn lean(&self, place: &ShellPoint) -> DVec3 {
-        self.vector(&self.pelt.fields.lean, place).normalize_or(self.normal(place))
+        self.vector(&self.scene.fields.lean, place).normalize_or(self.normal(place))
     }
 
     /// Height of the shell at a place, m along the lean.
@@ -276,12 +276,12 @@ impl<'a> Shader<'a> {
     }
 
     fn scalar(&self, values: &[f32], place: &ShellPoint) -> f64 {
-        let v = self.pelt.skin.triangles[place.triangle as usize].map(|v| f64::from(values[v as usize]));
+        let v = self.scene.skin.triangles[place.triangle as usize].map(|v| f64::from(values[v as usize]));
         v[0] * place.b.x + v[1] * place.b.y + v[2] * place.b.z
     }
 
     fn vector(&self, values: &[Vec3], place: &ShellPoint) -> DVec3 {
-        let v = self.pelt.skin.triangles[place.triangle as usize].map(|v| values[v as usize].as_dvec3());
+        let v = self.scene.skin.triangles[place.triangle as usize].map(|v| values[v as usize].as_dvec3());
         v[0] * place.b.x + v[1] * place.b.y + v[2] * place.b.z
     }
 }

@@ -20,7 +20,7 @@ use crate::gpu::{Choice, Gpu};
 use crate::math::{DVec3, Vec3};
 use crate::metrics::timing::{Recorder, Report};
 use crate::runtime::gpu::{Drawn, Renderer};
-use crate::runtime::{Picture, Scene, Show, View};
+use crate::runtime::{DrawList, Frame, Picture, Show};
 
 /// How to look at a coat.
 #[derive(Clone, Debug)]
@@ -217,7 +217,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &Options, framings: &[Framing]) ->
         } else {
             (light::studio(&camera), light::STUDIO_AMBIENT)
         };
-        let view = View {
+        let view = Frame {
             clip_from_world: camera.clip_from_world(origin_m, aspect, near_m, far_m).as_mat4(),
             eye: (DVec3::from(camera.eye) - origin_m).as_vec3().extend(1.0),
             size: options.size,
@@ -230,7 +230,13 @@ fn shoot(asset: &Asset, coat: &Coat, options: &Options, framings: &[Framing]) ->
     Ok(Shots { pictures, recorder, legend })
 }
 
-fn draw(renderer: &Renderer<'_>, scene: &Scene<'_>, view: &View, show: Show, recorder: &mut Recorder) -> Result<Drawn> {
+fn draw(
+    renderer: &Renderer<'_>,
+    scene: &DrawList<'_>,
+    view: &Frame,
+    show: Show,
+    recorder: &mut Recorder,
+) -> Result<Drawn> {
     let start = std::time::Instant::now();
     let drawn = renderer.draw(scene, view, show)?;
     let mut on_device = 0.0;

@@ -7,7 +7,7 @@ use crate::data::coat::{Coat, CoatPrimitive, FinEdge, Sampled, Tile};
 use crate::data::image::Image8;
 use crate::error::Result;
 use crate::math::{Vec2, Vec3};
-use crate::runtime::{Fur, Scene, Skin};
+use crate::runtime::{CoatMesh, DrawList, SkinMesh};
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
@@ -31,8 +31,8 @@ pub fn textures(asset: &Asset) -> Result<Textures> {
 }
 
 /// Everything that `asset` shows in `pose`.
-pub fn scene<'a>(asset: &'a Asset, coat: &'a Coat, textures: &'a Textures, pose: &Pose) -> Scene<'a> {
-    let mut scene = Scene { tiles: &coat.tiles, ..Default::default() };
+pub fn scene<'a>(asset: &'a Asset, coat: &'a Coat, textures: &'a Textures, pose: &Pose) -> DrawList<'a> {
+    let mut scene = DrawList { tiles: &coat.tiles, ..Default::default() };
     for part in &asset.parts {
         let worn: Vec<_> =
             coat.primitives.iter().filter(|worn| (worn.mesh, worn.primitive) == (part.mesh, part.primitive)).collect();
@@ -49,7 +49,7 @@ pub fn scene<'a>(asset: &'a Asset, coat: &'a Coat, textures: &'a Textures, pose:
 }
 
 /// All points of the scene, tips of the offsets included, for framing.
-pub fn points_m(scene: &Scene<'_>) -> Vec<Vec3> {
+pub fn points_m(scene: &DrawList<'_>) -> Vec<Vec3> {
     let skins =
         scene.skins.iter().flat_map(|skin| skin.triangles.iter().flatten().map(|&v| skin.positions_m[v as usize]));
     let tips = scene.furs.iter().flat_map(|fur| fur.positions_m.iter().zip(&fur.offsets_m).map(|(&p, &o)| p + o));
@@ -57,12 +57,12 @@ pub fn points_m(scene: &Scene<'_>) -> Vec<Vec3> {
 }
 
 /// What a coat primitive's shells and fins are, with its first tile alone.
-pub(super) fn fur<'a>(posed: &Posed, worn: &'a CoatPrimitive) -> Fur<'a> {
+pub(super) fn fur<'a>(posed: &Posed, worn: &'a CoatPrimitive) -> CoatMesh<'a> {
     let at = |list: &[Vec3]| worn.base_vertex.iter().map(|&v| list[v as usize]).collect();
     let turned = |list: &[Vec3]| {
         worn.base_vertex.iter().zip(list).map(|(&v, &o)| posed.world_from_offset[v as usize] * o).collect()
     };
-    Fur {
+    CoatMesh {
         tile: worn.tile,
         positions_m: at(&posed.positions_m),
         normals: at(&posed.normals),
@@ -77,7 +77,7 @@ pub(super) fn fur<'a>(posed: &Posed, worn: &'a CoatPrimitive) -> Fur<'a> {
 }
 
 /// What a coat primitive is drawn as: once, or once per tile where it passes from one into another.
-fn furs<'a>(posed: &Posed, worn: &'a CoatPrimitive, tiles: &[Tile]) -> Vec<Fur<'a>> {
+fn furs<'a>(posed: &Posed, worn: &'a CoatPrimitive, tiles: &[Tile]) -> Vec<CoatMesh<'a>> {
     let fur = fur(posed, worn);
     let Some(blend) = &worn.blend else { return vec![fur] };
     // Two coats at complementary densities: drawn over one another, optical depths add.
@@ -88,7 +88,7 @@ fn furs<'a>(posed: &Posed, worn: &'a CoatPrimitive, tiles: &[Tile]) -> Vec<Fur<'
     let longer = first.fin.width_m / second.fin.width_m;
     let thicker = first.fin.thickness_m / second.fin.thickness_m;
     let fin = |f: &FinEdge| FinEdge { u: f.u.map(|u| u * longer), thickness: f.thickness * thicker, ..*f };
-    let into = Fur {
+    let into = CoatMesh {
         tile: blend.tile,
         uv: worn.uv.iter().map(|uv| *uv * (first.edge_m / second.edge_m)).collect(),
         tint: dense(&|w| w),
@@ -96,14 +96,20 @@ fn furs<'a>(posed: &Posed, worn: &'a CoatPrimitive, tiles: &[Tile]) -> Vec<Fur<'
         over_last: true,
         ..fur.clone()
     };
-    vec![Fur { tint: dense(&|w| 1.0 - w), ..fur }, into]
+    vec![CoatMesh { tint: dense(&|w| 1.0 - w), ..fur }, into]
 }
 
 /// The skin under a coat, on the coat's vertices, so that it knows how much light the hair lets through.
-fn furred_skin<'a>(part: &Part, posed: &Posed, worn: &CoatPrimitive, tile: &Tile, textures: &'a Textures) -> Skin<'a> {
+fn furred_skin<'a>(
+    part: &Part,
+    posed: &Posed,
+    worn: &CoatPrimitive,
+    tile: &Tile,
+    textures: &'a Textures,
+) -> SkinMesh<'a> {
     let whole = surface(part, posed, textures);
     let at = |list: &[Vec3]| worn.base_vertex.iter().map(|&v| list[v as usize]).collect();
-    Skin {
+    SkinMesh {
         positions_m: at(&whole.positions_m),
         normals: at(&whole.normals),
         colour: at(&whole.colour),
@@ -126,8 +132,8 @@ fn furred_skin<'a>(part: &Part, posed: &Posed, worn: &CoatPrimitive, tile: &Tile
 }
 
 /// A part where no coat covers it.
-fn bare_skin<'a>(part: &Part, posed: &Posed, worn: &[&CoatPrimitive], textures: &'a Textures) -> Skin<'a> {
-    Skin { triangles: uncovered(part, worn), ..surface(part, posed, textures) }
+fn bare_skin<'a>(part: &Part, posed: &Posed, worn: &[&CoatPrimitive], textures: &'a Textures) -> SkinMesh<'a> {
+    SkinMesh { triangles: uncovered(part, worn), ..surface(part, posed, textures) }
 }
 
 /// The triangles of a part that no coat covers.
@@ -144,7 +150,7 @@ pub(super) fn uncovered(part: &Part, worn: &[&CoatPrimitive]) -> Vec<[u32; 3]> {
 }
 
 /// Vertices of a part with their base colour; no triangles.
-fn surface<'a>(part: &Part, posed: &Posed, textures: &'a Textures) -> Skin<'a> {
+fn surface<'a>(part: &Part, posed: &Posed, textures: &'a Textures) -> SkinMesh<'a> {
     let factor = part.base_colour.factor.truncate();
     let count = posed.positions_m.len();
     let texture = part.base_colour.texture.as_ref();
@@ -154,7 +160,7 @@ fn surface<'a>(part: &Part, posed: &Posed, textures: &'a Textures) -> Skin<'a> {
         (Some(texture), Some(set)) => set.iter().map(|&uv| texture.transformed(uv)).collect(),
         _ => vec![],
     };
-    Skin {
+    SkinMesh {
         positions_m: posed.positions_m.clone(),
         normals: posed.normals.clone(),
         colour: match &part.stored.colour {

@@ -4,20 +4,20 @@ mod cyhair;
 mod usda;
 
 use crate::common::{furrier_path, shared};
-use crate::pelts;
+use crate::scenes;
 use assert_cmd::Command;
 use furrier::asset::strands::{Export, Format, encode};
 use furrier::data::strands::Strands;
 use furrier::math::{DVec3, Vec3};
 
 fn some_hair() -> Strands {
-    let (mut guard, undercoat) = pelts::mink();
+    let (mut guard, undercoat) = scenes::mink();
     guard.density_per_cm2 = 2.0;
-    pelts::Grown::new(pelts::bent_pelt(1), &guard, &undercoat, Vec3::X, 35.0, 3).guard
+    scenes::Grown::new(scenes::bent_skin(1), &guard, &undercoat, Vec3::X, 35.0, 3).guard
 }
 
 fn export(strands: &Strands) -> Export<'_> {
-    Export { strands, origin_m: DVec3::new(1000.0, -2.0, 0.5), metres_per_unit: 0.01, name: "2 bent pelts" }
+    Export { strands, origin_m: DVec3::new(1000.0, -2.0, 0.5), metres_per_unit: 0.01, name: "2 bent scenes" }
 }
 
 /// A point of the hair in the file's units.
@@ -51,13 +51,13 @@ fn usd_curves_hold_the_hairs() {
     let text = String::from_utf8(encode(&export, Format::Usda).unwrap()).unwrap();
     let layer = usda::read(&text);
     let value = |path: &str| &layer.values[path];
-    assert_eq!(value("(defaultPrim)"), &usda::Value::Text("_2_bent_pelts".into()));
+    assert_eq!(value("(defaultPrim)"), &usda::Value::Text("_2_bent_skins".into()));
     assert_eq!(value("(upAxis)"), &usda::Value::Text("Y".into()));
     assert_eq!(value("(metersPerUnit)"), &usda::Value::Number(0.01));
-    assert_eq!(layer.types["_2_bent_pelts"], "Xform");
-    assert_eq!(layer.types["_2_bent_pelts/GuardHair"], "BasisCurves");
-    let origin = value("_2_bent_pelts.xformOp:translate").numbers();
-    let of = |attribute: &str| value(&format!("_2_bent_pelts/GuardHair.{attribute}"));
+    assert_eq!(layer.types["_2_bent_skins"], "Xform");
+    assert_eq!(layer.types["_2_bent_skins/GuardHair"], "BasisCurves");
+    let origin = value("_2_bent_skins.xformOp:translate").numbers();
+    let of = |attribute: &str| value(&format!("_2_bent_skins/GuardHair.{attribute}"));
     for (attribute, kind, interpolation) in [
         ("points", "point3f[]", ""),
         ("widths", "float[]", "vertex"),
@@ -66,8 +66,8 @@ fn usd_curves_hold_the_hairs() {
         ("primvars:hairId", "int[]", "uniform"),
         ("extent", "float3[]", ""),
     ] {
-        assert_eq!(layer.types[&format!("_2_bent_pelts/GuardHair.{attribute}")], kind);
-        let found = layer.values.get(&format!("_2_bent_pelts/GuardHair.{attribute}(interpolation)"));
+        assert_eq!(layer.types[&format!("_2_bent_skins/GuardHair.{attribute}")], kind);
+        let found = layer.values.get(&format!("_2_bent_skins/GuardHair.{attribute}(interpolation)"));
         let expected = (!interpolation.is_empty()).then(|| usda::Value::Text(interpolation.into()));
         assert_eq!(found, expected.as_ref(), "{attribute}");
     }
@@ -105,7 +105,7 @@ fn no_hair_is_a_file_too() {
     };
     assert!(cyhair::read(&encode(&export(&strands), Format::CyHair).unwrap()).points.is_empty());
     let text = String::from_utf8(encode(&export(&strands), Format::Usda).unwrap()).unwrap();
-    assert!(usda::read(&text).values["_2_bent_pelts/GuardHair.points"].list().is_empty());
+    assert!(usda::read(&text).values["_2_bent_skins/GuardHair.points"].list().is_empty());
 }
 
 /// The readers are no mirrors of the writers: they read what others wrote.

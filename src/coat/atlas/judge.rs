@@ -24,7 +24,7 @@ use crate::runtime::cpu::{Stack, View, slab_optical_depth};
 use crate::volume::march::content::{Content, Resolution};
 use crate::volume::march::volume::Volume;
 use crate::volume::march::{Journey, Start, Stepping};
-use crate::volume::pelt::{Hair, Pelt};
+use crate::volume::scene::{HairScattering, Scene};
 use crate::volume::shell::locate::within;
 use rayon::prelude::*;
 
@@ -97,15 +97,15 @@ impl<'a> Worn<'a> {
 
     /// The undercoat, as a picture has it.
     fn content(&self, normals: &[Vec3]) -> Option<Content<'a>> {
-        let pelt = Pelt {
+        let scene = Scene {
             skin: self.mesh,
             fields: self.fields,
             skin_factor: Vec3::ONE,
             guard: None,
             undercoat: Some(self.hair[1]),
-            hair: Hair::default(),
+            scattering: HairScattering::default(),
         };
-        Content::new(&pelt, normals, Resolution::default())
+        Content::new(&scene, normals, Resolution::default())
     }
 
     /// How finely it is resolved: two sub-elements to the finest detail.

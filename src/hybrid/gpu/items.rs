@@ -2,7 +2,7 @@
 
 use crate::data::strands::Strands;
 use crate::math::Vec3;
-use crate::volume::pelt::{Lighting, Pelt};
+use crate::volume::scene::{Lighting, Scene};
 use bytemuck::{Pod, Zeroable};
 
 /// No triangle, no item: `NOTHING` of `shared/scene.wgsl`.
@@ -71,17 +71,17 @@ pub struct VertexItem {
 }
 
 impl VertexItem {
-    /// The vertices of a pelt; `offsets_m` may be empty where there is no undercoat.
-    pub fn of(pelt: &Pelt<'_>, normals: &[Vec3], offsets_m: &[Vec3]) -> Vec<Self> {
-        let fields = pelt.fields;
-        let posed = pelt.skin.rest_m.as_ref().map(|rest_m| (rest_m, pelt.skin.at_rest().smooth_normals()));
+    /// The vertices of a scene; `offsets_m` may be empty where there is no undercoat.
+    pub fn of(scene: &Scene<'_>, normals: &[Vec3], offsets_m: &[Vec3]) -> Vec<Self> {
+        let fields = scene.fields;
+        let posed = scene.skin.rest_m.as_ref().map(|rest_m| (rest_m, scene.skin.at_rest().smooth_normals()));
         let (rest_m, rest_normals) = match &posed {
             Some((rest_m, rest_normals)) => (&rest_m[..], &rest_normals[..]),
-            None => (&pelt.skin.positions_m[..], normals),
+            None => (&scene.skin.positions_m[..], normals),
         };
-        (0..pelt.skin.positions_m.len())
+        (0..scene.skin.positions_m.len())
             .map(|v| Self {
-                position_m: pelt.skin.positions_m[v].to_array(),
+                position_m: scene.skin.positions_m[v].to_array(),
                 density: fields.density[v],
                 offset_m: offsets_m.get(v).map_or([0.0; 3], |o| o.to_array()),
                 length: fields.length[v],

@@ -7,7 +7,7 @@ use crate::math::Vec3;
 use crate::shade::kajiya_kay::KajiyaKay;
 use crate::shade::lobes::Lobes;
 use crate::stage::projection::View;
-use crate::volume::pelt::{Layer, Lighting, Pelt};
+use crate::volume::scene::{Layer, Lighting, Scene};
 use bytemuck::{Pod, Zeroable};
 
 /// `Kind` of `shared/scene.wgsl`.
@@ -91,11 +91,11 @@ pub struct SceneUniform {
 }
 
 impl SceneUniform {
-    /// Light and hair of a pelt; counts, and what only undercoat has, are left to be filled in.
-    pub fn new(pelt: &Pelt<'_>, lobes: &Lobes<f32>, lighting: &Lighting, settings: &Settings) -> Self {
-        let hair = &pelt.hair;
+    /// Light and hair of a scene; counts, and what only undercoat has, are left to be filled in.
+    pub fn new(scene: &Scene<'_>, lobes: &Lobes<f32>, lighting: &Lighting, settings: &Settings) -> Self {
+        let hair = &scene.scattering;
         let scatter = KajiyaKay::<f32>::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent);
-        let guard = pelt.guard;
+        let guard = scene.guard;
         let [undercoat_diffuse, undercoat_specular, undercoat_exponent] = scatter.coefficients();
         let (groups, attenuation_per_m) = match settings.blending {
             Blending::Virtual { fragments } => (fragments.clamp(1, 64) as f32, 0.0),
@@ -114,7 +114,7 @@ impl SceneUniform {
         let lights = 1 + lighting.fill.len() as u32;
         let profile = guard.map(|(strands, _)| strands.profile);
         Self {
-            triangle_count: pelt.skin.triangles.len() as u32,
+            triangle_count: scene.skin.triangles.len() as u32,
             layers: settings.resolution.layers.max(1),
             strand_count: guard.map_or(0, |(strands, _)| strands.len() as u32),
             points_per_strand: guard.map_or(2, |(strands, _)| strands.points_per_strand as u32),
@@ -129,12 +129,12 @@ impl SceneUniform {
             groups,
             ambient: lighting.ambient.to_array(),
             guard_albedo: (hair.guard.tt.albedo + hair.guard.trt.albedo + hair.guard.diffuse) as f32,
-            skin_factor: pelt.skin_factor.to_array(),
+            skin_factor: scene.skin_factor.to_array(),
             taper: profile.map_or(1.0, |p| p.taper),
-            undercoat_ramp: ramp(pelt.undercoat.map_or([Vec3::ONE; 3], |fibre| fibre.profile.ramp)),
+            undercoat_ramp: ramp(scene.undercoat.map_or([Vec3::ONE; 3], |fibre| fibre.profile.ramp)),
             guard_ramp: ramp(profile.map_or([Vec3::ONE; 3], |p| p.ramp)),
             guard_kind: guard.map_or(KindUniform::default(), |(_, fibre)| kind(fibre)),
-            undercoat_kind: pelt.undercoat.map_or(KindUniform::default(), kind),
+            undercoat_kind: scene.undercoat.map_or(KindUniform::default(), kind),
             tip_transparency: profile.map_or(0.0, |p| p.tip_transparency),
             tip_exponent: profile.map_or(1.0, |p| p.tip_exponent),
             tt_azimuth_scale: lobes.tt_azimuth_scale,

@@ -9,7 +9,7 @@ pub mod items;
 pub mod kernels;
 pub mod layout;
 pub mod plan;
-mod scene;
+mod resident;
 
 use super::cpu::{add, finish};
 use super::picture::Picture;
@@ -24,7 +24,7 @@ use crate::metrics::timing::Steps;
 use band::{Band, STEPS};
 use kernels::Kernels;
 use plan::Plan;
-use scene::GpuScene;
+use resident::Resident;
 use std::time::Instant;
 
 /// A graphics device with the kernels that draw a scene: what does not hang on the camera.
@@ -61,29 +61,29 @@ impl GpuRenderer<'_> {
         let start = Instant::now();
         let view = settings.view(camera, prepared.scene.skin.origin_m)?;
         let volume = prepared.volume(&view);
-        let scene = GpuScene::new(self, volume.as_ref(), &view, budget_bytes / 2)?;
-        let filled_ms = scene.fill_ms.as_ref().map_or(0.0, |ms| ms.iter().sum());
-        picture.steps.add("shell", ms_since(start) - filled_ms, scene.bytes[0] as u64);
+        let resident = Resident::new(self, volume.as_ref(), &view, budget_bytes / 2)?;
+        let filled_ms = resident.fill_ms.as_ref().map_or(0.0, |ms| ms.iter().sum());
+        picture.steps.add("shell", ms_since(start) - filled_ms, resident.bytes[0] as u64);
         for (i, name) in ["densities", "shadows"].into_iter().enumerate() {
-            let ms = scene.fill_ms.as_ref().map_or(0.0, |ms| ms[i]);
-            picture.steps.add(name, ms, scene.stored_bytes[i] as u64);
+            let ms = resident.fill_ms.as_ref().map_or(0.0, |ms| ms[i]);
+            picture.steps.add(name, ms, resident.stored_bytes[i] as u64);
         }
 
         let largest = gpu.largest_storage_bytes() as usize;
         let mut plan = Plan::new(view.size, budget_bytes, largest);
-        let mut band = Band::new(gpu, kernels, &scene, plan.room)?;
-        let lit_ms = band.light(gpu, kernels, &scene, &view)?;
-        picture.steps.add("shaded strands", lit_ms.unwrap_or(0.0), scene.bytes[1] as u64);
+        let mut band = Band::new(gpu, kernels, &resident, plan.room)?;
+        let lit_ms = band.light(gpu, kernels, &resident, &view)?;
+        picture.steps.add("shaded strands", lit_ms.unwrap_or(0.0), resident.bytes[1] as u64);
         picture.film = Film::of_layers(settings.size[0], settings.size[1], settings.layers);
         let height = view.size[1];
         let mut row = 0;
         while row < height {
             let rows = [row as u32, (row + plan.rows).min(height) as u32];
-            let drawn = band.draw(gpu, kernels, &scene, &view, rows)?;
+            let drawn = band.draw(gpu, kernels, &resident, &view, rows)?;
             if drawn.totals.overflow != 0 {
                 plan = plan.grown(&drawn.totals)?;
                 drop(band);
-                band = Band::new(gpu, kernels, &scene, plan.room)?;
+                band = Band::new(gpu, kernels, &resident, plan.room)?;
                 continue;
             }
             for (i, name) in STEPS.into_iter().enumerate() {
@@ -95,9 +95,9 @@ impl GpuRenderer<'_> {
             unpack(&mut picture.film, settings.edge_samples(), row, &drawn.film);
             row = rows[1] as usize;
         }
-        picture.counts.strands = scene.strand_count as u64;
-        picture.counts.pieces = scene.piece_count as u64;
-        picture.counts.subelements = scene.stored_bytes[0] as u64;
+        picture.counts.strands = resident.strand_count as u64;
+        picture.counts.pieces = resident.piece_count as u64;
+        picture.counts.subelements = resident.stored_bytes[0] as u64;
         finish(&mut picture.film, settings.edge_samples());
         Ok(picture)
     }

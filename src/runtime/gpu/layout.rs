@@ -1,7 +1,7 @@
 //! Structs as the shaders read them; `tests/shaders.rs` compares names, offsets and sizes with the WGSL.
 
 use crate::data::coat::{FinEdge, Sampled, Tile};
-use crate::runtime::scene::{Fur, MAX_LIGHTS, Skin, View};
+use crate::runtime::draw_list::{CoatMesh, Frame, MAX_LIGHTS, SkinMesh};
 use bytemuck::{Pod, Zeroable};
 
 /// `Light` of `shared/view.wgsl`.
@@ -16,7 +16,7 @@ pub struct LightUniform {
     pub(super) _pad1: f32,
 }
 
-/// `View` of `shared/view.wgsl`.
+/// `Frame` of `shared/view.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct ViewUniform {
@@ -34,7 +34,7 @@ pub struct ViewUniform {
 
 impl ViewUniform {
     /// The view's numbers; lights past [`MAX_LIGHTS`] were refused before.
-    pub fn new(view: &View) -> Self {
+    pub fn new(view: &Frame) -> Self {
         let mut lights = [LightUniform::default(); MAX_LIGHTS];
         for (slot, light) in lights.iter_mut().zip(&view.lights) {
             slot.to_light = light.to_light.to_array();
@@ -112,7 +112,7 @@ pub struct CoatVertex {
     pub offset_m: [f32; 3],
     /// Second texture coordinate.
     pub v: f32,
-    /// Skin normal.
+    /// SkinMesh normal.
     pub normal: [f32; 3],
     pub(super) _pad0: f32,
     /// The tile's x axis on the skin.
@@ -124,7 +124,7 @@ pub struct CoatVertex {
 
 impl CoatVertex {
     /// The vertices of `fur`.
-    pub fn of(fur: &Fur<'_>) -> Vec<Self> {
+    pub fn of(fur: &CoatMesh<'_>) -> Vec<Self> {
         (0..fur.positions_m.len())
             .map(|i| Self {
                 position_m: fur.positions_m[i].to_array(),
@@ -185,7 +185,7 @@ impl SkinVertex {
     ];
 
     /// The vertices of `skin`.
-    pub fn of(skin: &Skin<'_>) -> Vec<Self> {
+    pub fn of(skin: &SkinMesh<'_>) -> Vec<Self> {
         (0..skin.positions_m.len())
             .map(|i| Self {
                 position_m: skin.positions_m[i].to_array(),

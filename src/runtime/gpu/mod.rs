@@ -12,7 +12,7 @@ use crate::data::image::Image8;
 use crate::error::{Error, Result};
 use crate::gpu::{Gpu, Timer};
 use crate::math::Vec2;
-use crate::runtime::scene::{MAX_LIGHTS, Picture, Scene, Show, View};
+use crate::runtime::draw_list::{DrawList, Frame, MAX_LIGHTS, Picture, Show};
 use layout::ViewUniform;
 use pipelines::{COLOUR, DEPTH, EDGE_SAMPLES, Pipelines, RESOLVED};
 use resources::{GpuFur, GpuSkin, GpuTile};
@@ -85,7 +85,7 @@ impl<'a> Renderer<'a> {
     /// # Errors
     /// [`crate::error::Kind::Usage`] for a size the adapter cannot hold or too many lights; [`crate::error::Kind::Device`]
     /// from the device.
-    pub fn draw(&self, scene: &Scene<'_>, view: &View, show: Show) -> Result<Drawn> {
+    pub fn draw(&self, scene: &DrawList<'_>, view: &Frame, show: Show) -> Result<Drawn> {
         if view.lights.len() > MAX_LIGHTS {
             return Err(Error::usage("too many lights")
                 .with_field("--light")

@@ -90,7 +90,7 @@ pub struct Pipelines {
     pub layouts: Layouts,
     /// Opaque skin: tests and writes depth.
     pub skin: wgpu::RenderPipeline,
-    /// Skin that only hides what is behind it.
+    /// SkinMesh that only hides what is behind it.
     pub skin_depth: wgpu::RenderPipeline,
     /// Far side of the shells: tests depth; index 1 hands over to fins.
     pub far_shells: [wgpu::RenderPipeline; 2],

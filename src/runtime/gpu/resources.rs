@@ -7,7 +7,7 @@ use crate::data::coat::{Sampled, Tile};
 use crate::data::image::Image8;
 use crate::error::Result;
 use crate::gpu::{Coding, Gpu, TextureArray};
-use crate::runtime::scene::{Fur, Skin};
+use crate::runtime::draw_list::{CoatMesh, SkinMesh};
 
 /// Bytes of a vertex or index list.
 fn bytes_of<T>(list: &[T]) -> u64 {
@@ -120,7 +120,7 @@ impl GpuSkin {
     ///
     /// # Errors
     /// As [`Gpu::texture_array`].
-    pub fn new(gpu: &Gpu, layouts: &Layouts, skin: &Skin<'_>) -> Result<Self> {
+    pub fn new(gpu: &Gpu, layouts: &Layouts, skin: &SkinMesh<'_>) -> Result<Self> {
         let white = Image8 { width: 1, height: 1, channels: 4, pixels: vec![255; 4] };
         let (image, wrap) = skin.texture.unwrap_or((&white, [Wrap::Repeat; 2]));
         let texture = gpu.texture_array("base colour", &mip_chain(image), Coding::Srgb)?;
@@ -159,7 +159,7 @@ pub struct GpuFur {
 
 impl GpuFur {
     /// Uploads `fur`.
-    pub fn new(gpu: &Gpu, layouts: &Layouts, fur: &Fur<'_>) -> Self {
+    pub fn new(gpu: &Gpu, layouts: &Layouts, fur: &CoatMesh<'_>) -> Self {
         let vertices = CoatVertex::of(fur);
         let fins: Vec<FinInstance> = fur.fins.iter().map(FinInstance::from).collect();
         let bytes = bytes_of(&vertices) + bytes_of(fur.triangles) + bytes_of(&fins);

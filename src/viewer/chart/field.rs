@@ -7,7 +7,7 @@ use crate::data::mesh::Mesh;
 use crate::fur::field::singularities;
 use crate::math::Vec3;
 use crate::math::hash::{combine, unit_f32};
-use crate::runtime::{Fur, Skin};
+use crate::runtime::{CoatMesh, SkinMesh};
 use std::collections::HashMap;
 
 /// Strokes over all of the skin, about.
@@ -18,8 +18,8 @@ const LEANS: f32 = 0.02;
 const BALL: f32 = 0.009;
 
 /// See [`super::draw`].
-pub(super) fn draw<'a>(all: &[Worn<'_>]) -> (Vec<Skin<'a>>, Vec<String>) {
-    let furs: Vec<Fur<'_>> = all.iter().map(|worn| stage::fur(worn.posed, worn.worn)).collect();
+pub(super) fn draw<'a>(all: &[Worn<'_>]) -> (Vec<SkinMesh<'a>>, Vec<String>) {
+    let furs: Vec<CoatMesh<'_>> = all.iter().map(|worn| stage::fur(worn.posed, worn.worn)).collect();
     let used = || furs.iter().flat_map(|fur| fur.triangles.iter().flatten().map(move |&v| (fur, v as usize)));
     let lengths = || used().map(|(fur, v)| fur.offsets_m[v].length());
     let (least, most) = (lengths().fold(f32::INFINITY, f32::min), lengths().fold(0.0, f32::max));
@@ -29,7 +29,7 @@ pub(super) fn draw<'a>(all: &[Worn<'_>]) -> (Vec<Skin<'a>>, Vec<String>) {
     let high = used().map(|(fur, v)| fur.positions_m[v]).fold(Vec3::NEG_INFINITY, Vec3::max);
     let radius_m = BALL * (high - low).max(Vec3::ZERO).length();
 
-    let mut skins: Vec<Skin<'a>> = Vec::new();
+    let mut skins: Vec<SkinMesh<'a>> = Vec::new();
     let (mut crowns, mut saddles) = (0, 0);
     let mut signs = Shapes::default();
     for (worn, fur) in all.iter().zip(&furs) {
@@ -37,12 +37,12 @@ pub(super) fn draw<'a>(all: &[Worn<'_>]) -> (Vec<Skin<'a>>, Vec<String>) {
             let share = (fur.offsets_m[v].length() - least) / (most - least);
             LENGTHS[0].lerp(LENGTHS[1], if most > least * 1.001 { share } else { 0.5 })
         };
-        skins.push(Skin {
+        skins.push(SkinMesh {
             positions_m: fur.positions_m.clone(),
             normals: fur.normals.clone(),
             colour: (0..fur.positions_m.len()).map(shade).collect(),
             triangles: fur.triangles.to_vec(),
-            ..Skin::default()
+            ..SkinMesh::default()
         });
         strokes(fur, spacing_m, &mut signs);
         for (position_m, index) in turns(worn, fur) {
@@ -63,13 +63,13 @@ pub(super) fn draw<'a>(all: &[Worn<'_>]) -> (Vec<Skin<'a>>, Vec<String>) {
     (skins, legend)
 }
 
-fn area_m2(fur: &Fur<'_>, triangle: [u32; 3]) -> f32 {
+fn area_m2(fur: &CoatMesh<'_>, triangle: [u32; 3]) -> f32 {
     let [a, b, c] = triangle.map(|v| fur.positions_m[v as usize]);
     0.5 * (b - a).cross(c - a).length()
 }
 
 /// Where the hair's direction along the skin turns round itself, and how often.
-fn turns(worn: &Worn<'_>, fur: &Fur<'_>) -> Vec<(Vec3, i32)> {
+fn turns(worn: &Worn<'_>, fur: &CoatMesh<'_>) -> Vec<(Vec3, i32)> {
     let base = |v: u32| worn.worn.base_vertex[v as usize];
     let mesh = Mesh {
         positions_m: worn.posed.positions_m.clone(),
@@ -91,7 +91,7 @@ fn turns(worn: &Worn<'_>, fur: &Fur<'_>) -> Vec<(Vec3, i32)> {
 }
 
 /// Strokes at even distances: points thrown by chance, those too near an earlier one left out.
-fn strokes(fur: &Fur<'_>, spacing_m: f32, shapes: &mut Shapes) {
+fn strokes(fur: &CoatMesh<'_>, spacing_m: f32, shapes: &mut Shapes) {
     let cell = |p: Vec3| (p / spacing_m).floor().as_ivec3().to_array();
     let mut taken: HashMap<[i32; 3], Vec<Vec3>> = HashMap::new();
     let mut throws = Vec::new();

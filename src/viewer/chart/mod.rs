@@ -15,10 +15,10 @@ use crate::data::mesh::Mesh;
 use crate::data::patches::Patches;
 use crate::error::Result;
 use crate::math::Vec3;
-use crate::runtime::{Scene, Skin};
+use crate::runtime::{DrawList, SkinMesh};
 use std::f32::consts::PI;
 
-/// Skin without fur, linear RGB.
+/// SkinMesh without fur, linear RGB.
 const BARE: Vec3 = Vec3::splat(0.30);
 /// Light from everywhere: enough that colours keep their meaning in shadow.
 pub const AMBIENT: Vec3 = Vec3::splat(0.5);
@@ -44,7 +44,7 @@ struct Worn<'a> {
 /// A chart's surfaces and its legend, one sentence each.
 pub struct Drawing<'a> {
     /// Everything that is drawn.
-    pub scene: Scene<'a>,
+    pub scene: DrawList<'a>,
     /// What colours and signs mean, with the numbers they stand for.
     pub legend: Vec<String>,
 }
@@ -72,7 +72,7 @@ pub fn draw<'a>(asset: &'a Asset, coat: &'a Coat, pose: &Pose, chart: Chart, til
         Chart::Stretch => stretch::draw(&all, coat)?,
     };
     skins.extend(more);
-    Ok(Drawing { scene: Scene { skins, furs: Vec::new(), tiles: &coat.tiles }, legend })
+    Ok(Drawing { scene: DrawList { skins, furs: Vec::new(), tiles: &coat.tiles }, legend })
 }
 
 /// A light over the left shoulder of whoever looks along `forward`.
@@ -97,15 +97,15 @@ pub fn tile_outline() -> Image8 {
     image
 }
 
-fn bare<'a>(part: &Part, posed: &Posed, worn: &[&CoatPrimitive]) -> Skin<'a> {
+fn bare<'a>(part: &Part, posed: &Posed, worn: &[&CoatPrimitive]) -> SkinMesh<'a> {
     let triangles = stage::uncovered(part, worn);
     let count = posed.positions_m.len();
-    Skin {
+    SkinMesh {
         positions_m: posed.positions_m.clone(),
         normals: posed.normals.clone(),
         colour: vec![BARE; count],
         triangles,
-        ..Skin::default()
+        ..SkinMesh::default()
     }
 }
 
@@ -126,15 +126,15 @@ impl Worn<'_> {
     }
 
     /// A skin of every triangle by itself, each in one colour.
-    fn facets<'a>(&self, colour: impl Fn(usize) -> Vec3) -> Skin<'a> {
+    fn facets<'a>(&self, colour: impl Fn(usize) -> Vec3) -> SkinMesh<'a> {
         let base: Vec<usize> =
             self.worn.triangles.iter().flatten().map(|&v| self.worn.base_vertex[v as usize] as usize).collect();
-        Skin {
+        SkinMesh {
             positions_m: base.iter().map(|&v| self.posed.positions_m[v]).collect(),
             normals: base.iter().map(|&v| self.posed.normals[v]).collect(),
             colour: (0..base.len()).map(|i| colour(i / 3)).collect(),
             triangles: (0..base.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
-            ..Skin::default()
+            ..SkinMesh::default()
         }
     }
 }

@@ -9,14 +9,14 @@ use crate::data::image::Image8;
 use crate::error::Result;
 use crate::fur::patch;
 use crate::math::Vec3;
-use crate::runtime::Skin;
+use crate::runtime::SkinMesh;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Width of a seam's line over the skin's diagonal.
 const LINE: f32 = 0.002;
 
 /// See [`super::draw`].
-pub(super) fn draw<'a>(all: &[Worn<'_>], coat: &Coat, tile: &'a Image8) -> Result<(Vec<Skin<'a>>, Vec<String>)> {
+pub(super) fn draw<'a>(all: &[Worn<'_>], coat: &Coat, tile: &'a Image8) -> Result<(Vec<SkinMesh<'a>>, Vec<String>)> {
     let mut skins = Vec::with_capacity(all.len());
     let (mut patches, mut seams_m) = (0, 0.0);
     let mut lines = Shapes::default();
@@ -25,7 +25,7 @@ pub(super) fn draw<'a>(all: &[Worn<'_>], coat: &Coat, tile: &'a Image8) -> Resul
         patches += colours.len();
         let of_triangle = |t: usize| colours[&worn.worn.patch[worn.worn.triangles[t][0] as usize]];
         let uv = worn.worn.triangles.iter().flatten().map(|&v| worn.worn.uv[v as usize]).collect();
-        skins.push(Skin { uv, texture: Some((tile, [Wrap::Repeat; 2])), ..worn.facets(of_triangle) });
+        skins.push(SkinMesh { uv, texture: Some((tile, [Wrap::Repeat; 2])), ..worn.facets(of_triangle) });
         let (mesh, laid) = worn.laid(coat)?;
         for ends in patch::seam_edges(&mesh, &laid) {
             let base = ends.map(|v| worn.worn.base_vertex[v as usize] as usize);

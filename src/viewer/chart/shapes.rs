@@ -2,11 +2,11 @@
 
 use super::colours::INK;
 use crate::math::Vec3;
-use crate::runtime::Skin;
+use crate::runtime::SkinMesh;
 
 /// Small signs on the skin, all in one surface.
 #[derive(Default)]
-pub(super) struct Shapes<'a>(pub Skin<'a>);
+pub(super) struct Shapes<'a>(pub SkinMesh<'a>);
 
 impl Shapes<'_> {
     fn push(&mut self, corners: [(Vec3, Vec3); 3], colour: Vec3) {

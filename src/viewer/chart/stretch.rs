@@ -6,13 +6,13 @@ use crate::data::coat::Coat;
 use crate::error::Result;
 use crate::fur::patch;
 use crate::math::Vec3;
-use crate::runtime::Skin;
+use crate::runtime::SkinMesh;
 
 /// Singular values that the map's ends stand for.
 const ENDS: [f64; 2] = [0.7, 1.4];
 
 /// See [`super::draw`].
-pub(super) fn draw<'a>(all: &[Worn<'_>], coat: &Coat) -> Result<(Vec<Skin<'a>>, Vec<String>)> {
+pub(super) fn draw<'a>(all: &[Worn<'_>], coat: &Coat) -> Result<(Vec<SkinMesh<'a>>, Vec<String>)> {
     let mut skins = Vec::with_capacity(all.len());
     let mut values = Vec::new();
     for worn in all {

@@ -5,7 +5,7 @@ use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa};
 use crate::math::table::Table;
-use crate::volume::pelt::{Layer, Pelt};
+use crate::volume::scene::{Layer, Scene};
 use crate::volume::shell::Shell;
 use crate::volume::shell::prisms::{Prisms, Vertex};
 
@@ -63,16 +63,16 @@ pub struct Content<'a> {
 }
 
 impl<'a> Content<'a> {
-    /// Of a pelt's undercoat; none where it has no such hair. `normals` are the skin's smooth ones.
-    pub fn new(pelt: &Pelt<'a>, normals: &[Vec3], resolution: Resolution) -> Option<Self> {
-        let fibre = pelt.undercoat?;
+    /// Of a scene's undercoat; none where it has no such hair. `normals` are the skin's smooth ones.
+    pub fn new(scene: &Scene<'a>, normals: &[Vec3], resolution: Resolution) -> Option<Self> {
+        let fibre = scene.undercoat?;
         let undercoat = Undercoat::new(fibre, resolution.pattern);
         if undercoat.density_per_m2 <= 0.0 || undercoat.height_m <= 0.0 {
             return None;
         }
-        let triangles = pelt.skin.triangles.len();
+        let triangles = scene.skin.triangles.len();
         let own = Layer::new(fibre, 1.0, 1.0);
-        let guard = pelt.guard.map(|(_, fibre)| Layer::new(fibre, 1.0, 1.0));
+        let guard = scene.guard.map(|(_, fibre)| Layer::new(fibre, 1.0, 1.0));
         let above = Table::new(|t| {
             let height_m = t * undercoat.height_m;
             own.above(height_m) + guard.map_or(0.0, |layer| layer.above(height_m))
@@ -83,10 +83,10 @@ impl<'a> Content<'a> {
             let [below, here, over] = [low, t * last_level, low + 1.0].map(|level| above.at(level / last_level));
             if over < below { low + (here - below) / (over - below) } else { t * last_level }
         });
-        let shell = Shell::new(pelt.skin, pelt.fields, undercoat);
-        let fields = pelt.fields;
+        let shell = Shell::new(scene.skin, scene.fields, undercoat);
+        let fields = scene.fields;
         let vertex = |v: usize| Vertex {
-            foot_m: pelt.skin.positions_m[v],
+            foot_m: scene.skin.positions_m[v],
             offset_m: shell.offsets_m[v],
             normal: normals[v],
             tint: fields.tint[v],
@@ -94,10 +94,10 @@ impl<'a> Content<'a> {
             length: fields.length[v],
         };
         Some(Self {
-            vertices: (0..pelt.skin.positions_m.len()).map(vertex).collect(),
-            twice_area_m2: (0..triangles).map(|t| 2.0 * pelt.skin.rest_area_m2(t)).collect(),
-            rest_normals: match pelt.skin.rest_m {
-                Some(_) => pelt.skin.at_rest().smooth_normals(),
+            vertices: (0..scene.skin.positions_m.len()).map(vertex).collect(),
+            twice_area_m2: (0..triangles).map(|t| 2.0 * scene.skin.rest_area_m2(t)).collect(),
+            rest_normals: match scene.skin.rest_m {
+                Some(_) => scene.skin.at_rest().smooth_normals(),
                 None => normals.to_vec(),
             },
             resolution,

@@ -7,7 +7,7 @@ mod faces;
 mod kind;
 mod walk;
 
-use super::pelt::Pelt;
+use super::scene::Scene;
 use super::shell::Shell;
 use super::shell::prism::Place;
 use crate::fur::undercoat::Undercoat;
@@ -109,23 +109,23 @@ pub struct MeanShadow<'a> {
 }
 
 impl<'a> MeanShadow<'a> {
-    /// Of a pelt, in columns over its vertices and, where those are farther apart than `span` heights of the tips, between
+    /// Of a scene, in columns over its vertices and, where those are farther apart than `span` heights of the tips, between
     /// them; none where nothing grows.
-    pub fn new(pelt: &Pelt<'a>, to_light: Vec3, span: f32) -> Option<Self> {
-        let guard = pelt.guard.map(|(_, fibre)| fibre);
-        let of_shell = Undercoat::new(pelt.undercoat.or(guard)?, None);
+    pub fn new(scene: &Scene<'a>, to_light: Vec3, span: f32) -> Option<Self> {
+        let guard = scene.guard.map(|(_, fibre)| fibre);
+        let of_shell = Undercoat::new(scene.undercoat.or(guard)?, None);
         let shell_m = of_shell.height_m;
         if shell_m <= 0.0 {
             return None;
         }
         let tips = guard.map_or(1.0, |fibre| (fibre.height_m() / shell_m).max(1.0));
-        let mut around = vec![Vec::new(); pelt.skin.positions_m.len()];
-        for (t, triangle) in pelt.skin.triangles.iter().enumerate() {
+        let mut around = vec![Vec::new(); scene.skin.positions_m.len()];
+        for (t, triangle) in scene.skin.triangles.iter().enumerate() {
             for &v in triangle {
-                around[pelt.skin.position_class[v as usize] as usize].push(t as u32);
+                around[scene.skin.position_class[v as usize] as usize].push(t as u32);
             }
         }
-        let shell = Shell::new(pelt.skin, pelt.fields, of_shell);
+        let shell = Shell::new(scene.skin, scene.fields, of_shell);
         let tips_m = shell_m * tips;
         let columns = Columns::new(&shell, span * tips_m);
         let goes_linearly = |t: u32| {
@@ -134,12 +134,12 @@ impl<'a> MeanShadow<'a> {
         };
         Some(Self {
             faces: Faces::new(&shell, tips, to_light),
-            linear: (0..pelt.skin.triangles.len() as u32).map(goes_linearly).collect(),
+            linear: (0..scene.skin.triangles.len() as u32).map(goes_linearly).collect(),
             shell,
             tips,
-            kinds: [pelt.undercoat, guard].map(|fibre| fibre.map(|fibre| Kind::new(fibre, shell_m, tips))),
+            kinds: [scene.undercoat, guard].map(|fibre| fibre.map(|fibre| Kind::new(fibre, shell_m, tips))),
             to_light,
-            twice_area_m2: (0..pelt.skin.triangles.len()).map(|t| 2.0 * pelt.skin.rest_area_m2(t)).collect(),
+            twice_area_m2: (0..scene.skin.triangles.len()).map(|t| 2.0 * scene.skin.rest_area_m2(t)).collect(),
             cells: std::iter::repeat_with(OnceLock::new).take(columns.count()).collect(),
             columns,
             around,

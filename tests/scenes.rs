@@ -1,4 +1,4 @@
-//! Small pelts made in code, for tests of the renderer.
+//! Small scenes made in code, for tests of the renderer.
 
 use furrier::data::camera::Camera;
 use furrier::data::fields::Fields;
@@ -10,9 +10,9 @@ use furrier::fur::groom::{Colour, Guard, Length, Shape, Undercoat};
 use furrier::fur::grow::skin;
 use furrier::math::{DVec3, Vec3};
 use furrier::stage::projection::View;
-use furrier::volume::pelt::{Hair, Lighting, Pelt};
+use furrier::volume::scene::{HairScattering, Lighting, Scene};
 
-/// Skin and hair that a [`Pelt`] borrows.
+/// Skin and hair that a [`Scene`] borrows.
 pub struct Grown {
     pub mesh: Mesh,
     pub fields: Fields,
@@ -45,14 +45,14 @@ impl Grown {
     }
 
     /// With guard hair and undercoat.
-    pub fn pelt(&self) -> Pelt<'_> {
-        Pelt {
+    pub fn scene(&self) -> Scene<'_> {
+        Scene {
             skin: &self.mesh,
             fields: &self.fields,
             skin_factor: Vec3::splat(0.5),
             guard: Some((&self.guard, &self.guard_fibre)),
             undercoat: Some(&self.undercoat_fibre),
-            hair: Hair::default(),
+            scattering: HairScattering::default(),
         }
     }
 }
@@ -86,7 +86,7 @@ pub fn grid(u: usize, v: usize, place: impl Fn(f32, f32) -> Vec3) -> Mesh {
 }
 
 /// Half a cylinder lying along x, open at its borders: 3,584 triangles and 190 cm² at `detail` 1.
-pub fn bent_pelt(detail: usize) -> Mesh {
+pub fn bent_skin(detail: usize) -> Mesh {
     let (radius, length) = (0.04, 0.15);
     grid(56 * detail, 32 * detail, |u, v| {
         let angle = std::f32::consts::PI * v;

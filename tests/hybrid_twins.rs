@@ -1,7 +1,7 @@
 //! The hybrid renderer on a graphics device against the same renderer on the CPU, pixel by pixel.
 
-use crate::pelts::{self, Grown};
-use furrier::bake::picture::{self as depicted, Only, Scene, studio};
+use crate::scenes::{self, Grown};
+use furrier::bake::picture::{self as depicted, Only, PictureRequest, studio};
 use furrier::data::camera::Camera;
 use furrier::data::film::Film;
 use furrier::data::image::Image8;
@@ -17,7 +17,7 @@ use furrier::metrics::compare::{Light, compare};
 use furrier::preset::Preset;
 use furrier::stage::tone::{Development, develop};
 use furrier::volume::march::content::Resolution;
-use furrier::volume::pelt::{Lighting, Pelt};
+use furrier::volume::scene::{Lighting, Scene};
 use std::cell::Cell;
 
 /// The share of pixels of which no channel differs by more than 1/255.
@@ -31,16 +31,16 @@ fn developed(film: &Film) -> Image8 {
     develop(film, &Development { background: Some(Vec3::splat(0.2)), ..Development::default() })
 }
 
-fn on_gpu(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Film {
+fn on_gpu(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Film {
     let gpu = Gpu::open(&Choice::Auto).unwrap();
-    let prepared = prepare(pelt, lighting, settings).unwrap();
+    let prepared = prepare(scene, lighting, settings).unwrap();
     gpu::prepare(&gpu, &prepared).unwrap().draw(camera, settings.band_bytes).unwrap().film
 }
 
 /// Holds both pictures to each other, layer by layer.
-fn hold(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) {
-    let cpu = draw(pelt, lighting, camera, settings).unwrap().film;
-    let gpu = on_gpu(pelt, lighting, camera, settings);
+fn hold(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) {
+    let cpu = draw(scene, lighting, camera, settings).unwrap().film;
+    let gpu = on_gpu(scene, lighting, camera, settings);
     let (a, b) = (developed(&cpu), developed(&gpu));
     let share = share_alike(&a, &b);
     let flip = compare(&Light::from(&cpu), &Light::from(&gpu)).unwrap().flip;
@@ -66,13 +66,13 @@ fn hold(pelt: &Pelt<'_>, lighting: &Lighting, camera: &Camera, settings: &Settin
     }
 }
 
-fn pelt(guard_per_cm2: f32, clumped: bool) -> Grown {
-    let (mut guard, mut undercoat) = pelts::mink();
+fn scene(guard_per_cm2: f32, clumped: bool) -> Grown {
+    let (mut guard, mut undercoat) = scenes::mink();
     guard.density_per_cm2 = guard_per_cm2;
     if clumped {
         undercoat.shape.clump = Clump { spacing_mm: 4.0, strength: 0.6 };
     }
-    Grown::new(pelts::bent_pelt(1), &guard, &undercoat, Vec3::X, 35.0, 3)
+    Grown::new(scenes::bent_skin(1), &guard, &undercoat, Vec3::X, 35.0, 3)
 }
 
 fn small() -> Settings {
@@ -80,55 +80,55 @@ fn small() -> Settings {
 }
 
 #[test]
-fn a_pelt_in_bands_and_samples_looks_the_same_on_both() {
-    let grown = pelt(120.0, true);
+fn a_scene_in_bands_and_samples_looks_the_same_on_both() {
+    let grown = scene(120.0, true);
     // Room for a few rows at a time, and lists that are too short at first.
     let settings = Settings { halvings: 1, band_bytes: 3 << 20, ..small() };
-    hold(&grown.pelt(), &pelts::studio(), &pelts::camera(0.35), &settings);
+    hold(&grown.scene(), &scenes::studio(), &scenes::camera(0.35), &settings);
 }
 
 #[test]
 fn a_preview_looks_the_same_on_both() {
     let settings = Settings::preview(small().size);
-    hold(&pelt(400.0, true).pelt(), &pelts::studio(), &pelts::camera(0.35), &settings);
+    hold(&scene(400.0, true).scene(), &scenes::studio(), &scenes::camera(0.35), &settings);
 }
 
 #[test]
 fn simplified_blending_under_many_lights_looks_the_same_on_both() {
-    let grown = pelt(60.0, false);
+    let grown = scene(60.0, false);
     let settings = Settings { blending: Blending::Simplified { attenuation_per_m: 400.0 }, ..small() };
-    let mut lighting = pelts::studio();
+    let mut lighting = scenes::studio();
     lighting.fill_on_undercoat = true;
     for towards in [Vec3::new(-1.0, -0.5, 0.3), Vec3::new(0.2, 1.0, 0.1)] {
         lighting.fill.push(Directional::travelling(towards, Vec3::new(0.8, 1.0, 1.4)).unwrap());
     }
-    hold(&grown.pelt(), &lighting, &pelts::camera(0.35), &settings);
+    hold(&grown.scene(), &lighting, &scenes::camera(0.35), &settings);
 }
 
 #[test]
 fn each_kind_of_hair_alone_and_bare_skin_look_the_same_on_both() {
-    let grown = pelt(60.0, false);
+    let grown = scene(60.0, false);
     for (guard, undercoat) in [(true, false), (false, true), (false, false)] {
-        let mut pelt = grown.pelt();
-        pelt.guard = pelt.guard.filter(|_| guard);
-        pelt.undercoat = pelt.undercoat.filter(|_| undercoat);
-        hold(&pelt, &pelts::studio(), &pelts::camera(0.3), &small());
+        let mut scene = grown.scene();
+        scene.guard = scene.guard.filter(|_| guard);
+        scene.undercoat = scene.undercoat.filter(|_| undercoat);
+        hold(&scene, &scenes::studio(), &scenes::camera(0.3), &small());
     }
 }
 
 #[test]
 fn an_eye_inside_the_coat_sees_the_same_on_both() {
-    let grown = pelt(40.0, false);
+    let grown = scene(40.0, false);
     // Little may be stored, so that the march must ask the noise.
     let resolution = Resolution { most_subdivisions: 4, ..Resolution::default() };
     let settings = Settings { resolution, band_bytes: 4 << 20, ..small() };
     let camera = Camera { eye: [0.0, 0.043, 0.0], target: [0.3, 0.041, 0.01], up: [0.0, 1.0, 0.0], vfov_deg: 57.0 };
-    hold(&grown.pelt(), &pelts::studio(), &camera, &settings);
+    hold(&grown.scene(), &scenes::studio(), &camera, &settings);
 }
 
 fn hold_asset(input: &str, pose: Option<(String, f64)>) {
     let preset = Preset::load("mink").unwrap().with_settings(&["guard.density_per_cm2=60".to_owned()]).unwrap();
-    let scene = Scene {
+    let request = PictureRequest {
         input: input.to_owned(),
         preset,
         materials: Vec::new(),
@@ -137,11 +137,11 @@ fn hold_asset(input: &str, pose: Option<(String, f64)>) {
         only: Only::Hybrid,
         pose,
     };
-    let grown = depicted::Grown::new(&scene).unwrap();
+    let grown = depicted::Grown::new(&request).unwrap();
     let settings = Settings { size: [64, 64], ..Settings::default() };
     let camera = grown.camera(35.0, 20.0, 1.0, settings.size);
     let lighting = studio(&camera);
-    hold(&grown.pelt(), &lighting, &camera, &settings);
+    hold(&grown.scene(), &lighting, &camera, &settings);
 }
 
 #[test]
@@ -157,10 +157,10 @@ fn a_walking_creature_looks_the_same_on_both() {
 
 #[test]
 fn a_device_that_fails_hands_over_and_says_so() {
-    let grown = pelt(40.0, false);
+    let grown = scene(40.0, false);
     let settings = Settings { size: [48, 32], ..Settings::default() };
-    let (lighting, camera) = (pelts::studio(), pelts::camera(0.35));
-    let cpu = draw(&grown.pelt(), &lighting, &camera, &settings).unwrap().film;
+    let (lighting, camera) = (scenes::studio(), scenes::camera(0.35));
+    let cpu = draw(&grown.scene(), &lighting, &camera, &settings).unwrap().film;
     // Devices that are lost: so many, then sound ones.
     let draw_after = |lost: u32| -> Drawn {
         let opened = Cell::new(0);
@@ -172,7 +172,7 @@ fn a_device_that_fails_hands_over_and_says_so() {
             }
             Ok(gpu)
         };
-        with_fallback(open, &prepare(&grown.pelt(), &lighting, &settings).unwrap(), &camera).unwrap()
+        with_fallback(open, &prepare(&grown.scene(), &lighting, &settings).unwrap(), &camera).unwrap()
     };
     let drawn = draw_after(u32::MAX);
     assert_eq!(drawn.device, "cpu");

@@ -58,7 +58,7 @@ pub(super) fn unit(q: DQuat) -> Option<DQuat> {
 
 /// Nodes in an order in which parents come first.
 #[derive(Clone, Debug, Default)]
-pub struct Scene {
+pub struct SceneGraph {
     /// Per node.
     pub local: Vec<Local>,
     /// Per node.
@@ -78,7 +78,7 @@ pub struct Skin {
     pub joints: Vec<(usize, DMat4)>,
 }
 
-impl Scene {
+impl SceneGraph {
     /// Reads the hierarchy of a validated document.
     ///
     /// # Errors

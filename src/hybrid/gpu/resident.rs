@@ -1,4 +1,4 @@
-//! A pelt on the device: skin, hair and lights, and the shell's stored density and shadow.
+//! A scene on the device: skin, hair and lights, and the shell's stored density and shadow.
 
 use super::GpuRenderer;
 use super::items::{AT_BORDER, InsideItem, LINEAR, LightItem, NOTHING, StrandItem, TriangleItem, VertexItem};
@@ -13,12 +13,12 @@ use crate::stage::projection::View;
 use crate::volume::march::content::TABLES;
 use crate::volume::march::volume::Volume;
 use crate::volume::mean::MeanShadow;
-use crate::volume::pelt::Pelt;
+use crate::volume::scene::Scene;
 use crate::volume::shell::{lattice, locate, outer};
 use bytemuck::Zeroable;
 
 /// Everything that stays the same from band to band.
-pub(super) struct GpuScene {
+pub(super) struct Resident {
     /// Group 0.
     pub group: wgpu::BindGroup,
     /// Group 1.
@@ -74,8 +74,8 @@ impl Stored {
     }
 }
 
-impl GpuScene {
-    /// Uploads a pelt and fills its shell. At most `most_bytes` go to the stored density, prisms within the view first;
+impl Resident {
+    /// Uploads a scene and fills its shell. At most `most_bytes` go to the stored density, prisms within the view first;
     /// where that is not enough, the march asks the noise itself: the same picture, slower.
     ///
     /// # Errors
@@ -91,11 +91,11 @@ impl GpuScene {
         let mean = mean.as_ref();
         let thinned = prepared.scene.guard.and_then(|(strands, _)| settings.thinning(view).of(strands));
         let guard = prepared.scene.guard.map(|(strands, fibre)| (thinned.as_ref().unwrap_or(strands), fibre));
-        let pelt = &Pelt { guard, ..prepared.scene };
-        let mut uniform = SceneUniform::new(pelt, &prepared.lobes, lighting, settings);
+        let scene = &Scene { guard, ..prepared.scene };
+        let mut uniform = SceneUniform::new(scene, &prepared.lobes, lighting, settings);
         let layers = uniform.layers as usize;
         let mut triangles: Vec<TriangleItem> =
-            (0..pelt.skin.triangles.len()).map(|t| triangle(pelt, volume, mean, t as u32)).collect();
+            (0..scene.skin.triangles.len()).map(|t| triangle(scene, volume, mean, t as u32)).collect();
         let most_columns = most_bytes.min(gpu.largest_storage_bytes() as usize).min(u32::MAX as usize) / layers;
         let (seen, unseen): (Vec<u32>, Vec<u32>) = match volume {
             Some(volume) => (0..triangles.len() as u32).partition(|&t| may_be_seen(volume, view, t)),
@@ -147,8 +147,8 @@ impl GpuScene {
             }
         }
         let offsets_m = volume.map_or(&[][..], |v| &v.shell().offsets_m);
-        let vertices = VertexItem::of(pelt, normals, offsets_m);
-        let (strands, points): (_, &[Vec3]) = match pelt.guard {
+        let vertices = VertexItem::of(scene, normals, offsets_m);
+        let (strands, points): (_, &[Vec3]) = match scene.guard {
             Some((strands, _)) => (StrandItem::of(strands), &strands.points_m),
             None => (Vec::new(), &[]),
         };
@@ -211,7 +211,7 @@ impl GpuScene {
     }
 }
 
-fn triangle(pelt: &Pelt<'_>, volume: Option<&Volume<'_>>, mean: Option<&MeanShadow<'_>>, t: u32) -> TriangleItem {
+fn triangle(scene: &Scene<'_>, volume: Option<&Volume<'_>>, mean: Option<&MeanShadow<'_>>, t: u32) -> TriangleItem {
     let at_border = volume.is_some_and(|v| v.shell().neighbours.at_border(t));
     let linear = mean.is_some_and(|mean| mean.is_linear(t));
     let beyond = |corner| {
@@ -219,13 +219,13 @@ fn triangle(pelt: &Pelt<'_>, volume: Option<&Volume<'_>>, mean: Option<&MeanShad
         side.map_or(NOTHING, |beyond| beyond.triangle << 2 | u32::from(beyond.corner))
     };
     TriangleItem {
-        corners: pelt.skin.triangles[t as usize],
+        corners: scene.skin.triangles[t as usize],
         density_splits: volume.map_or(0, |v| v.subdivisions(t)),
         beyond: [0, 1, 2].map(beyond),
         shadow_splits: volume.map_or(0, |v| v.shadow_subdivisions(t)),
         density_at: NOTHING,
         shadow_at: NOTHING,
-        rest_area: pelt.skin.rest_area_m2(t as usize),
+        rest_area: scene.skin.rest_area_m2(t as usize),
         traits: u32::from(at_border) * AT_BORDER + u32::from(linear) * LINEAR,
         ..TriangleItem::zeroed()
     }

@@ -12,18 +12,18 @@ pub const MAX_LIGHTS: usize = 16;
 
 /// A posed asset with its coat.
 #[derive(Clone, Debug, Default)]
-pub struct Scene<'a> {
+pub struct DrawList<'a> {
     /// Opaque surfaces, furred or not.
-    pub skins: Vec<Skin<'a>>,
+    pub skins: Vec<SkinMesh<'a>>,
     /// What the furred ones wear.
-    pub furs: Vec<Fur<'a>>,
+    pub furs: Vec<CoatMesh<'a>>,
     /// Hair textures.
     pub tiles: &'a [Tile],
 }
 
 /// An opaque surface. Vertex arrays have one entry per vertex; `coat_uv` and `coat_density` only where it is furred.
 #[derive(Clone, Debug, Default)]
-pub struct Skin<'a> {
+pub struct SkinMesh<'a> {
     /// Vertex positions, m.
     pub positions_m: Vec<Vec3>,
     /// Unit vertex normals.
@@ -46,8 +46,8 @@ pub struct Skin<'a> {
 
 /// Shells and fins. Vertex arrays have one entry per coat vertex.
 #[derive(Clone, Debug, Default)]
-pub struct Fur<'a> {
-    /// Index into [`Scene::tiles`].
+pub struct CoatMesh<'a> {
+    /// Index into [`DrawList::tiles`].
     pub tile: usize,
     /// Positions on the skin, m.
     pub positions_m: Vec<Vec3>,
@@ -89,7 +89,7 @@ impl Default for Show {
 
 /// Camera and light.
 #[derive(Clone, Debug)]
-pub struct View {
+pub struct Frame {
     /// World to clip space: x right, y up, depth 0 (near) to 1 (far).
     pub clip_from_world: Mat4,
     /// Perspective: the eye, m, and 1. Orthographic: the unit vector towards the viewer, and 0.

@@ -11,7 +11,7 @@ use crate::shade::lobes::LobeParameters;
 
 /// Skin and hair of a picture.
 #[derive(Clone, Copy, Debug)]
-pub struct Pelt<'a> {
+pub struct Scene<'a> {
     /// The skin.
     pub skin: &'a Mesh,
     /// What varies over it.
@@ -23,12 +23,12 @@ pub struct Pelt<'a> {
     /// Undercoat, as a volume.
     pub undercoat: Option<&'a Fibre>,
     /// How hairs scatter.
-    pub hair: Hair,
+    pub scattering: HairScattering,
 }
 
 /// How both kinds of hair scatter light.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hair {
+pub struct HairScattering {
     /// Guard hair.
     pub guard: LobeParameters,
     /// Diffuse albedo of undercoat, times its colour.
@@ -39,7 +39,7 @@ pub struct Hair {
     pub undercoat_exponent: f64,
 }
 
-impl Default for Hair {
+impl Default for HairScattering {
     fn default() -> Self {
         Self {
             guard: LobeParameters::default(),
