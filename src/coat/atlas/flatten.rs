@@ -23,7 +23,7 @@ pub fn by_triangle(strands: &Strands, triangles: usize) -> Vec<Range<usize>> {
 }
 
 /// The hair that belongs to a region: every point p of a hair rooted at r is where M⁻¹ (p − r) is from its root in the chart, M being
-/// the frame that a runtime will use there (`docs/steps/shells.md`, "Worn on a skin"). x and y in m from the region's first texel.
+/// the frame that a runtime will use there (`docs/steps/shells.md`, "Applied to a skin"). x and y in m from the region's first texel.
 pub fn flatten(
     strands: &Strands,
     ranges: &[Range<usize>],
