@@ -7,6 +7,7 @@ use crate::hybrid_twins::share_alike;
 use crate::laws::shading::furnace;
 use crate::metrics::{changed, picture};
 use furrier::data::image::Image8;
+use furrier::data::light::Light;
 use furrier::data::ray::DepthRange;
 use furrier::math::Vec3;
 use furrier::metrics::compare::compare;
@@ -246,7 +247,8 @@ fn twins_tell_two_pixels_in_a_thousand() {
 #[test]
 fn the_reference_sees_a_light_three_hundredths_too_weak() {
     let mut lighting = crate::scenes::studio();
-    lighting.key.irradiance *= 0.97;
+    let Light::Directional(key) = &mut lighting.key else { unreachable!("the studio's key is far away") };
+    key.irradiance *= 0.97;
     lighting.ambient *= 0.97;
     let difference = crate::oracle::against_reference(&lighting);
     assert_eq!(crate::oracle::fault(&difference), Some("bias"));

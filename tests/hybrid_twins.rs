@@ -100,7 +100,7 @@ fn simplified_blending_under_many_lights_looks_the_same_on_both() {
     let mut lighting = scenes::studio();
     lighting.fill_on_undercoat = true;
     for towards in [Vec3::new(-1.0, -0.5, 0.3), Vec3::new(0.2, 1.0, 0.1)] {
-        lighting.fill.push(Directional::travelling(towards, Vec3::new(0.8, 1.0, 1.4)).unwrap());
+        lighting.fill.push(Directional::travelling(towards, Vec3::new(0.8, 1.0, 1.4)).unwrap().into());
     }
     hold(&grown.scene(), &lighting, &scenes::camera(0.35), &settings);
 }

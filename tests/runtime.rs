@@ -20,7 +20,9 @@ fn look(eye: Vec3, size: [u32; 2]) -> Frame {
         clip_from_world: camera.clip_from_world(DVec3::ZERO, aspect, far * 0.05, far).as_mat4(),
         eye: Vec4::from((eye, 1.0)),
         size,
-        lights: vec![Directional { to_light: Vec3::new(-0.5, 0.7, 0.6).normalize(), irradiance: Vec3::splat(3.0) }],
+        lights: vec![
+            Directional { to_light: Vec3::new(-0.5, 0.7, 0.6).normalize(), irradiance: Vec3::splat(3.0) }.into(),
+        ],
         ambient: Vec3::splat(0.5),
     }
 }
@@ -107,7 +109,8 @@ fn light_adds_up_and_darkness_is_dark() {
     let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
     let mut view = look(Vec3::new(0.05, 0.05, 0.26), [48, 48]);
     let mut sum = |lights: &[Directional], ambient: f32| -> f64 {
-        (view.lights, view.ambient) = (lights.to_vec(), Vec3::splat(ambient));
+        view.lights = lights.iter().copied().map(Into::into).collect();
+        view.ambient = Vec3::splat(ambient);
         let picture = renderer.draw(&ball.scene(&tiles), &view, Show::default()).unwrap().picture;
         picture.pixels.iter().map(|p| f64::from(p[0] + p[1] + p[2])).sum()
     };

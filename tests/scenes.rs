@@ -117,7 +117,7 @@ pub fn mink() -> (Guard, Undercoat) {
 /// A key light from above left, a little light from everywhere.
 pub fn studio() -> Lighting {
     Lighting {
-        key: Directional::travelling(Vec3::new(1.0, -1.6, -0.8), Vec3::splat(6.0)).unwrap(),
+        key: Directional::travelling(Vec3::new(1.0, -1.6, -0.8), Vec3::splat(6.0)).unwrap().into(),
         fill: Vec::new(),
         ambient: Vec3::splat(0.6),
         fill_on_undercoat: false,

@@ -156,7 +156,7 @@ fn march_pixel(at: u32) -> u32 {
             steps++;
             let left = through * exp(-taken.depth);
             let weight = through - left;
-            let look = undercoat_look(taken, direction);
+            let look = undercoat_look(taken, view.eye_m, direction);
             if group.depth == 0.0 {
                 group.from_m = taken.from_m;
             }

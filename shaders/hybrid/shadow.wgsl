@@ -1,6 +1,6 @@
 // Fills the stored shadow, the optical depth of undercoat, and of guard hair in the mean, towards the key light: one thread
 // per corner of sub-elements and level.
-#import furrier::scene::{scene, triangles, lights, AT_BORDER}
+#import furrier::scene::{scene, triangles, AT_BORDER}
 #import furrier::prism::{Place, jacobian, corners_of, corner_place}
 #import furrier::undercoat::code_value
 #import furrier::march::{advance, walk_from, Stepping, MOST_STEPS}
@@ -41,7 +41,7 @@ fn shadow(
         // Steps towards the light may be long: what they miss is blurred by the shadow's own resolution.
         let patience = min(1.0 + HASTE * depth, MOST_PATIENCE);
         let stepping = Stepping(0.5 * patience, 0.5 * min(patience, MOST_LENGTHENED));
-        depth += advance(&walk, origin_m, lights[0].to_light, 1e30, stepping).depth;
+        depth += advance(&walk, origin_m, scene.to_key, 1e30, stepping).depth;
     }
     depth += mean_depths(triangle, b, t * scene.undercoat_kind.top_m / tips_m()).y;
     write_byte(first * (scene.layers + 1u) + level * corners_of(d) + corner, code_value(depth));

@@ -1,5 +1,6 @@
 // Light on guard hair, one thread per strand, as src/hybrid/guard_light.rs.
 #import furrier::scene::{scene, triangles, Strand, strands, lights, point_of, normal_at, lean_at, density_at, length_at, unit_or, NOTHING, AT_BORDER}
+#import furrier::light::light_at
 #import furrier::camera::view
 #import furrier::guard::{LOOKS, guard_ramp, root_of}
 #import furrier::fur_light::{angles_of, cos_of, guard_lobes, shadow_power, slant_depth, sky_depth, terminator, above_both}
@@ -50,7 +51,7 @@ fn log_look(strand: Strand, first: u32, i: u32) -> vec3<f32> {
     let power = shadow_power(albedo * scene.guard_albedo);
     var sum = scene.ambient * albedo * scene.guard_albedo * exp(-power * sky_depth(above));
     for (var k = 0u; k < scene.light_count; k++) {
-        let light = lights[k];
+        let light = light_at(lights[k], point_m);
         let open = terminator(light.to_light, normal);
         if open <= 0.0 {
             continue;

@@ -1,5 +1,6 @@
 // Fins: quads on edges near the silhouette, with hair seen from the side (Lengyel et al. 2001 §2.3).
 #import furrier::view::{view, ray_direction}
+#import furrier::light::light_at
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
 #import furrier::coat::{CoatVertex, tile}
 
@@ -102,7 +103,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let outside_depth = -log(max(medium.a, 1e-3)) * present;
     var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
     for (var i = 0u; i < view.light_count; i++) {
-        let light = view.lights[i];
+        let light = light_at(view.lights[i], in.position_m);
         let cos_light = dot(normal, light.to_light);
         let along_light = dot(tangent, light.to_light);
         let lateral = sqrt(max(0.0, 1.0 - along_light * along_light)) / max(abs(cos_light), 0.02);

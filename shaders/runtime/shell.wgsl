@@ -1,6 +1,7 @@
 // Shells: slab after slab of the coat. Each is drawn at its top, so that its outline is where the hair's is, and fetched
 // where the ray passes its middle.
 #import furrier::view::{view, ray_direction}
+#import furrier::light::light_at
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
 #import furrier::coat::{CoatVertex, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
     lateral, path_through_slab, footprint, fetch, run_through_slab, gain, decode_medium, fin_share}
@@ -147,7 +148,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let outside_depth = min(-log(max(surface.a, 1e-3)), DEEPEST) * present;
     var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
     for (var i = 0u; i < view.light_count; i++) {
-        let light = view.lights[i];
+        let light = light_at(view.lights[i], in.position_m);
         let light_ray = ray_in_tile(at, light.to_light);
         let slant = lateral(at, light.to_light, medium) / (abs(light_ray.direction.z) * max(medium.extinction, 1e-3));
         let shadow = exp(-outside_depth * slant);

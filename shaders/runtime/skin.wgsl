@@ -1,5 +1,6 @@
 // Skin: opaque, with the base colour of the asset; under a coat it lies in the coat's shadow.
 #import furrier::view::{view, ray_direction}
+#import furrier::light::light_at
 #import furrier::shading::skin_radiance
 #import furrier::coat::{hair_sampler, albedo_texture}
 
@@ -47,7 +48,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 
     var radiance = albedo * view.ambient * exp(-outside_depth);
     for (var i = 0u; i < view.light_count; i++) {
-        let light = view.lights[i];
+        let light = light_at(view.lights[i], in.position_m);
         let cos_light = dot(turned, light.to_light);
         // Upright hair of which 45 degrees is the stored case: tan θ.
         let slope = sqrt(max(0.0, 1.0 - cos_light * cos_light)) / max(abs(cos_light), 0.02);

@@ -2,6 +2,7 @@
 #define_import_path furrier::scene
 
 #import furrier::prism::Prism
+#import furrier::light::Light
 
 // No triangle, no item.
 const NOTHING: u32 = 0xffffffffu;
@@ -67,6 +68,9 @@ struct Scene {
     guard_albedo: f32,
     skin_factor: vec3<f32>,
     taper: f32,
+    // Unit vector along which the key light's shadow is followed.
+    to_key: vec3<f32>,
+    unused: f32,
 
     undercoat_ramp: array<vec4<f32>, 3>,
     guard_ramp: array<vec4<f32>, 3>,
@@ -130,11 +134,6 @@ struct Vertex {
     rest_normal: vec3<f32>,
 }
 
-struct Light {
-    to_light: vec3<f32>,
-    irradiance: vec3<f32>,
-}
-
 struct Strand {
     tint: vec3<f32>,
     id: u32,
@@ -160,6 +159,11 @@ fn prism_of(triangle: u32) -> Prism {
         array(vertices[c.x].position_m, vertices[c.y].position_m, vertices[c.z].position_m),
         array(vertices[c.x].offset_m, vertices[c.y].offset_m, vertices[c.z].offset_m),
     );
+}
+
+fn position_at(triangle: u32, b: vec3<f32>) -> vec3<f32> {
+    let c = triangles[triangle].corners;
+    return vertices[c.x].position_m * b.x + vertices[c.y].position_m * b.y + vertices[c.z].position_m * b.z;
 }
 
 fn normal_at(triangle: u32, b: vec3<f32>) -> vec3<f32> {

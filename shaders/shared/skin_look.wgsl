@@ -1,7 +1,8 @@
 // What bare or furred skin looks like, as src/hybrid/skin.rs.
 #define_import_path furrier::skin_look
 
-#import furrier::scene::{scene, lights, normal_at, lean_at, tint_at, density_at, length_at}
+#import furrier::scene::{scene, lights, position_at, normal_at, lean_at, tint_at, density_at, length_at}
+#import furrier::light::light_at
 #import furrier::fur_light::{above_both, sky_depth, slant_depth, terminator, PI}
 #import furrier::mean_shadow::{mean_depths, tips_m}
 
@@ -20,9 +21,10 @@ fn skin_look(triangle: u32, b: vec3<f32>, direction: vec3<f32>) -> SkinLook {
     let albedo = tint_at(triangle, b) * scene.skin_factor;
     // The back of the skin is bare.
     let above = select(above_both(density_at(triangle, b), length_at(triangle, b), 0.0), 0.0, back);
+    let at_m = position_at(triangle, b);
     var radiance = scene.ambient * albedo * exp(-sky_depth(above));
     for (var i = 0u; i < scene.light_count; i++) {
-        let light = lights[i];
+        let light = light_at(lights[i], at_m);
         let cosine = dot(light.to_light, normal);
         if cosine > 0.0 {
             var depth = slant_depth(above, light.to_light, normal, lean);

@@ -5,6 +5,7 @@
 #import furrier::prism::{barycentric, corners_of, around_corners}
 #import furrier::undercoat::decode_value
 #import furrier::march::Step
+#import furrier::light::light_at
 #import furrier::fur_light::{angles_of, cos_of, kajiya_kay, shadow_power, slant_depth, sky_depth, terminator}
 
 // Bytes by level, then corner of sub-elements; of all prisms one after the other.
@@ -42,8 +43,9 @@ struct Look {
     radiance: vec3<f32>,
 }
 
-// Colour of the hair at a step and the radiance it sends against `direction`.
-fn undercoat_look(taken: Step, direction: vec3<f32>) -> Look {
+// Colour of the hair at a step of a ray from `origin_m`, and the radiance it sends against `direction`.
+fn undercoat_look(taken: Step, origin_m: vec3<f32>, direction: vec3<f32>) -> Look {
+    let middle_m = origin_m + direction * (taken.from_m + 0.5 * taken.length_m);
     let b = barycentric(taken.place);
     let t = taken.place.t;
     let albedo = tint_at(taken.triangle, b) * undercoat_ramp(t);
@@ -53,7 +55,7 @@ fn undercoat_look(taken: Step, direction: vec3<f32>) -> Look {
     let normal = normal_at(taken.triangle, b);
     var radiance = scene.ambient * albedo * scene.undercoat_albedo * exp(-power * sky_depth(above));
     for (var i = 0u; i < scene.undercoat_light_count; i++) {
-        let light = lights[i];
+        let light = light_at(lights[i], middle_m);
         let open = terminator(light.to_light, normal);
         if open <= 0.0 {
             continue;

@@ -1,14 +1,9 @@
 // What every pass that draws a picture knows: the camera and the lights.
 #define_import_path furrier::view
 
-const MAX_LIGHTS: u32 = 16u;
+#import furrier::light::Light
 
-struct Light {
-    // Unit vector towards the light, world axes.
-    to_light: vec3<f32>,
-    // Irradiance on a surface that faces it, linear RGB.
-    irradiance: vec3<f32>,
-}
+const MAX_LIGHTS: u32 = 16u;
 
 struct View {
     clip_from_world: mat4x4<f32>,

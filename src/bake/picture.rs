@@ -6,6 +6,7 @@ use crate::asset;
 use crate::asset::strands::Export;
 use crate::data::camera::Camera;
 use crate::data::film::Film;
+use crate::data::light::Directional;
 use crate::data::mesh::Mesh;
 use crate::error::Result;
 use crate::fur::groom::fibre::Fibre;
@@ -194,7 +195,7 @@ impl Grown {
 pub fn studio(camera: &Camera) -> Lighting {
     let [right, up, back] = camera.axes().map(|axis| axis.as_vec3());
     let to_light = (up * 0.8 + back * 0.7 - right * 0.9).normalize();
-    let key = crate::data::light::Directional { to_light, irradiance: Vec3::splat(2.2 * PI) };
+    let key = Directional { to_light, irradiance: Vec3::splat(2.2 * PI) }.into();
     Lighting { key, fill: Vec::new(), ambient: Vec3::splat(0.6), fill_on_undercoat: false }
 }
 

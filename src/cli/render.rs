@@ -248,8 +248,8 @@ impl Render {
             lighting.fill_on_undercoat = self.env_on_undercoat;
         }
         if !given.is_empty() {
-            lighting.key = given.remove(0);
-            lighting.fill = given;
+            lighting.key = given.remove(0).into();
+            lighting.fill = given.into_iter().map(Into::into).collect();
         }
         if let Some(ambient) = &self.ambient {
             lighting.ambient = viewer::parse_triple(ambient, "--ambient")?;

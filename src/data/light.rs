@@ -14,8 +14,11 @@ use std::f32::consts::FRAC_PI_2;
 /// Points nearer to a light than this, m, are lit as at this distance: nothing is infinitely bright.
 pub const NEAREST_M: f32 = 1e-6;
 
-/// Least difference between the cosines of a cone's edges: `max(0.001, cos(inner) - cos(outer))` of the extension.
-const LEAST_EDGE: f32 = 0.001;
+/// Least difference between the cosines of a cone's edges.
+///
+/// The extension's reference code has 0.001, with which a cone narrower than 2.6° would nowhere reach the "brightness inside the
+/// innerConeAngle" that its text promises.
+const LEAST_EDGE: f32 = 1e-6;
 
 /// A light of any kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,7 +145,7 @@ impl Point {
                 .with_found(position_m)
                 .with_expected("three finite numbers"));
         }
-        // "When defined, it must be > 0."
+        // "Must be > 0. When undefined, range is assumed to be infinite."
         if let Some(range_m) = range_m.filter(|&range_m| !(range_m > 0.0 && range_m.is_finite())) {
             return Err(Error::usage("a light cannot end there")
                 .with_field("range")
@@ -191,15 +194,15 @@ impl Spot {
     /// Names a zero or non-finite direction, or angles that are not in 0 ≤ inner < outer ≤ π/2.
     pub fn new(point: Point, direction: Vec3, inner_rad: f32, outer_rad: f32) -> Result<Self> {
         let direction = unit(direction)?;
-        // "innerConeAngle … must be greater than or equal to 0 and less than outerConeAngle"; "outerConeAngle … must be greater
-        // than innerConeAngle and less than or equal to PI / 2.0." A right angle's nearest f32 is a little more.
+        // innerConeAngle "must be greater than or equal to 0 and less than outerConeAngle", which "must be greater than
+        // innerConeAngle and less than or equal to PI / 2.0".
         if !(0.0 <= inner_rad && inner_rad < outer_rad && outer_rad <= FRAC_PI_2) {
             return Err(Error::usage("there is no such cone of light")
                 .with_field("inner and outer angle")
                 .with_found(format!("{inner_rad} and {outer_rad} rad"))
                 .with_expected("0 or more, and between that and a right angle"));
         }
-        Ok(Self { point, direction, inner_cos: libm::cosf(inner_rad), outer_cos: libm::cosf(outer_rad).max(0.0) })
+        Ok(Self { point, direction, inner_cos: libm::cosf(inner_rad), outer_cos: libm::cosf(outer_rad) })
     }
 
     fn at(&self, p: Vec3) -> Directional {
@@ -210,8 +213,8 @@ impl Spot {
     }
 
     /// What a cosine to the axis is multiplied by and what is added, for a number whose square is the cone's share of light:
-    /// "lightAngleScale = 1.0f / max(0.001f, cos(innerConeAngle) - cos(outerConeAngle))" and "lightAngleOffset =
-    /// -cos(outerConeAngle) * lightAngleScale".
+    /// lightAngleScale = 1 / (cos(innerConeAngle) − cos(outerConeAngle)) and "lightAngleOffset = -cos(outerConeAngle) *
+    /// lightAngleScale".
     pub fn cone(&self) -> [f32; 2] {
         let scale = 1.0 / (self.inner_cos - self.outer_cos).max(LEAST_EDGE);
         [scale, -self.outer_cos * scale]

@@ -4,6 +4,7 @@
 
 mod adapter;
 mod compute;
+pub mod light;
 mod memory;
 mod shader;
 mod timer;

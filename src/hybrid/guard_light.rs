@@ -98,8 +98,8 @@ impl<'a> GuardShader<'a> {
         let Some(shadows) = self.shadows else { return };
         let Prepared { scene, normals, lighting, .. } = self.prepared;
         let lit = |triangle: u32| {
-            let corners = scene.skin.triangles[triangle as usize].map(|v| normals[v as usize]);
-            corners.iter().any(|&normal| terminator(lighting.key.to_light, normal) > 0.0)
+            let corners = scene.skin.triangles[triangle as usize].map(|v| v as usize);
+            corners.iter().any(|&v| terminator(lighting.key.at(scene.skin.positions_m[v]).to_light, normals[v]) > 0.0)
         };
         let at_border = |&triangle: &u32| shadows.volume.shell().neighbours.at_border(triangle) && lit(triangle);
         let roots = strands.par_iter().map(|&strand| self.strands.roots[strand as usize].triangle);
@@ -132,10 +132,11 @@ impl<'a> GuardShader<'a> {
         let rise = lean.dot(normal).max(0.05);
         let share_of_top = 1.0 / (rise * self.top_m * length).max(f32::MIN_POSITIVE);
 
-        let lit = terminator(self.prepared.lighting.key.to_light, normal) > 0.0;
-        let column = lit.then(|| self.column(root.triangle, b, rise, length));
         let points = strands.points_of_m(strand);
         let last = points.len() - 1;
+        let key = &self.prepared.lighting.key;
+        let lit = [0, last].iter().any(|&i| terminator(key.at(points[i]).to_light, normal) > 0.0);
+        let column = lit.then(|| self.column(root.triangle, b, rise, length));
         let point = |i: usize| points[i.min(last)];
         // The hair's direction turns evenly from point to point.
         let turn = |i: usize| if i == 0 || i >= last { 2.0 } else { 1.0 };
@@ -153,6 +154,7 @@ impl<'a> GuardShader<'a> {
             let height_m = (at_m - Vec3s::splat(points[0])).dot(Vec3s::splat(normal));
             let normal = Vec3s::splat(normal);
             let spot = Spot {
+                at_m,
                 albedo: self.ramp(F32s::of(&s)).times(Vec3s::splat(strands.tint[strand])),
                 hair: Vec3s::of(&along).normalized_or(Vec3s::splat(lean)),
                 to_eye: (Vec3s::splat(self.eye_m) - at_m).normalized_or(normal),
@@ -195,8 +197,8 @@ impl<'a> GuardShader<'a> {
         let ambient = share.times(Vec3s::splat(lighting.ambient));
         let mut sum = ambient.times(through(power, sky_depths(spot.above)));
         let lobes = self.prepared.lobes.map(F32s::splat);
-        for (i, light) in std::iter::once(&lighting.key).chain(&lighting.fill).enumerate() {
-            let to_light = Vec3s::splat(light.to_light);
+        for (i, light) in lighting.all().enumerate() {
+            let (to_light, irradiance) = light.at_lanes(spot.at_m);
             let angles = Angles::of_lanes(spot.hair, to_light, spot.to_eye);
             let s = lobes.scatter(angles);
             let twice = spot.albedo.times(spot.albedo) * s.twice;
@@ -207,7 +209,7 @@ impl<'a> GuardShader<'a> {
             };
             let shadow = through(power, depth);
             let open = terminators(to_light, spot.normal);
-            let irradiance = Vec3s::splat(light.irradiance) * (angles.cos_in() * open);
+            let irradiance = irradiance * (angles.cos_in() * open);
             sum = sum + scattered.times(shadow).times(irradiance);
         }
         sum
@@ -246,6 +248,7 @@ impl lanes::Work for Shade<'_, '_> {
 
 /// Points of a hair to be lit.
 struct Spot<I: Isa> {
+    at_m: Vec3s<I>,
     albedo: Vec3s<I>,
     hair: Vec3s<I>,
     to_eye: Vec3s<I>,

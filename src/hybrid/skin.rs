@@ -77,7 +77,8 @@ pub fn shade(prepared: &Prepared<'_>, t: u32, barycentric: Vec3, direction: Vec3
     let above: f32 =
         if back { 0.0 } else { kinds.iter().flatten().map(|f| Layer::new(f, density, length).above(0.0)).sum() };
     let mut radiance = lighting.ambient * albedo * exp_negative(-sky_depth(above));
-    for (i, light) in std::iter::once(&lighting.key).chain(&lighting.fill).enumerate() {
+    let at_m = mix3(&scene.skin.positions_m);
+    for (i, light) in lighting.all().map(|light| light.at(at_m)).enumerate() {
         let cosine = light.to_light.dot(normal);
         if cosine > 0.0 {
             let depth = match mean {

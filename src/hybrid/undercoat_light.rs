@@ -1,6 +1,5 @@
 //! What undercoat sends to the eye.
 
-use crate::data::light::Directional;
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, Vec3s};
 use crate::shade::kajiya_kay::KajiyaKay;
@@ -14,17 +13,19 @@ use crate::volume::shell::prisms::Prisms;
 #[derive(Debug)]
 pub struct UndercoatShader<'a> {
     lighting: &'a Lighting,
+    eye_m: Vec3,
     scatter: KajiyaKay<f32>,
     albedo_share: f32,
     ramp: [Vec3; 3],
 }
 
 impl<'a> UndercoatShader<'a> {
-    /// For a scene's undercoat.
-    pub fn new(scene: &Scene<'_>, lighting: &'a Lighting) -> Self {
+    /// For a scene's undercoat, seen from `eye_m`.
+    pub fn new(scene: &Scene<'_>, lighting: &'a Lighting, eye_m: Vec3) -> Self {
         let hair = &scene.scattering;
         Self {
             lighting,
+            eye_m,
             scatter: KajiyaKay::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent),
             albedo_share: hair.undercoat_diffuse as f32,
             ramp: scene.undercoat.map_or([Vec3::ONE; 3], |fibre| fibre.profile.ramp),
@@ -48,11 +49,13 @@ impl<'a> UndercoatShader<'a> {
         let normal = prisms.normal(steps.b);
         let mut radiance = share.times(Vec3s::splat(self.lighting.ambient)).times(through(power, sky_depths(above)));
         let spot = Spot { albedo, power, normal, hair: steps.hair, to_eye: steps.direction * F32s::splat(-1.0) };
-        radiance = radiance + self.lit(&spot, &self.lighting.key, shadow);
+        let middle_m = Vec3s::splat(self.eye_m) + steps.direction * (steps.from_m + steps.length_m * 0.5);
+        radiance = radiance + self.lit(&spot, self.lighting.key.at_lanes(middle_m), shadow);
         if self.lighting.fill_on_undercoat {
             for light in &self.lighting.fill {
-                let depth = slant_depths(above, Vec3s::splat(light.to_light), normal, steps.hair);
-                radiance = radiance + self.lit(&spot, light, depth);
+                let arriving = light.at_lanes(middle_m);
+                let depth = slant_depths(above, arriving.0, normal, steps.hair);
+                radiance = radiance + self.lit(&spot, arriving, depth);
             }
         }
         (albedo, radiance)
@@ -60,12 +63,11 @@ impl<'a> UndercoatShader<'a> {
 
     /// What a light gives through an optical depth.
     #[inline(always)]
-    fn lit<I: Isa>(&self, spot: &Spot<I>, light: &Directional, depth: F32s<I>) -> Vec3s<I> {
-        let to_light = Vec3s::splat(light.to_light);
+    fn lit<I: Isa>(&self, spot: &Spot<I>, (to_light, irradiance): (Vec3s<I>, Vec3s<I>), depth: F32s<I>) -> Vec3s<I> {
         let open = terminators(to_light, spot.normal);
         let angles = Angles::of_lanes(spot.hair, to_light, spot.to_eye);
         let (tinted, plain) = self.scatter.map(F32s::splat).scatter(angles);
-        let irradiance = Vec3s::splat(light.irradiance) * (angles.cos_in() * open);
+        let irradiance = irradiance * (angles.cos_in() * open);
         (spot.albedo * tinted).plus(plain).times(through(spot.power, depth)).times(irradiance)
     }
 }

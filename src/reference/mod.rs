@@ -12,6 +12,7 @@ pub mod fold;
 pub mod guard;
 pub mod kind;
 pub mod lens;
+mod light;
 pub mod line;
 pub mod medium;
 pub mod piece;

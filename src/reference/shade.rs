@@ -3,6 +3,7 @@
 
 use super::bvh::Ray;
 use super::guard::Guard;
+use super::light::Arriving;
 use super::medium::{Counted, Medium};
 use super::point::ShellPoint;
 use super::skin::Skin;
@@ -42,6 +43,7 @@ pub struct Look {
 
 /// What stands around a shaded point.
 struct Site {
+    at_m: DVec3,
     normal: DVec3,
     lean: DVec3,
     /// Hair area above per skin area.
@@ -94,7 +96,7 @@ impl<'a> Shader<'a> {
         let albedo = medium.vector(&fields.tint, place) * ramp.as_dvec3();
         let hair = medium.hair(place);
         let height_m = place.t * self.height_m(place);
-        let site = self.site(place, height_m, hair, self.key_depth(place));
+        let site = self.site(place, medium.slabs.position_m(place), height_m, hair, self.key_depth(place));
         let diffuse = albedo * self.scene.scattering.undercoat_diffuse;
         let scattered = |angles: Angles<f64>| {
             let (tinted, plain) = self.undercoat.scatter(angles);
@@ -120,7 +122,8 @@ impl<'a> Shader<'a> {
         let at_knot = |i: usize| (point(i + 1) - point(i.saturating_sub(1))).normalize_or(lean);
         let tangent = at_knot(piece).lerp(at_knot(piece + 1), along).normalize_or(lean);
         let height_m = self.height_over(&foot, lean, strand, knot);
-        let site = self.site(&foot, height_m, lean, self.hair_depth(strand, knot));
+        let at_m = point(piece).lerp(point(piece + 1), along);
+        let site = self.site(&foot, at_m, height_m, lean, self.hair_depth(strand, knot));
         let albedo =
             strands.tint[strand as usize].as_dvec3() * strands.profile.ramp_at(guard.s(knot) as f32).as_dvec3();
         let p = &self.scene.scattering.guard;
@@ -140,19 +143,21 @@ impl<'a> Shader<'a> {
         let normal = if back { -outside } else { outside };
         let lean = self.lean(place);
         let albedo = self.vector(&self.scene.fields.tint, place) * self.scene.skin_factor.as_dvec3();
+        let at_m = self.vector(&self.scene.skin.positions_m, place);
         // The back of a scene is bare.
         let site = if back {
-            Site { normal, lean, above: 0.0, key_depth: 0.0 }
+            Site { at_m, normal, lean, above: 0.0, key_depth: 0.0 }
         } else {
-            self.site(place, 0.0, lean, self.key_depth(place))
+            self.site(place, at_m, 0.0, lean, self.key_depth(place))
         };
         let mut radiance = self.lighting.ambient.as_dvec3() * albedo * libm::exp(-f64::from(sky_depth(site.above)));
-        for (i, light) in std::iter::once(&self.lighting.key).chain(&self.lighting.fill).enumerate() {
-            let cosine = light.to_light.as_dvec3().dot(normal);
+        for (i, light) in self.lighting.all().map(|light| Arriving::new(light, at_m)).enumerate() {
+            let cosine = light.to_light.dot(normal);
             if cosine > 0.0 {
-                let open = f64::from(terminator(light.to_light, normal.as_vec3()));
-                let lit = FRAC_1_PI * cosine * open * libm::exp(-self.depth(i, light.to_light, &site));
-                radiance += light.irradiance.as_dvec3() * albedo * lit;
+                let to_light = light.to_light.as_vec3();
+                let open = f64::from(terminator(to_light, normal.as_vec3()));
+                let lit = FRAC_1_PI * cosine * open * libm::exp(-self.depth(i, to_light, &site));
+                radiance += light.irradiance * albedo * lit;
             }
         }
         Look { radiance, albedo, tangent: DVec3::ZERO, normal }
@@ -171,16 +176,16 @@ impl<'a> Shader<'a> {
         let power = DVec3::new(shadow_power(share.x), shadow_power(share.y), shadow_power(share.z));
         let through = |depth: f64| (power * -depth).map(libm::exp);
         let mut sum = self.lighting.ambient.as_dvec3() * share * through(f64::from(sky_depth(site.above)));
-        let lights = std::iter::once(&self.lighting.key).chain(self.lighting.fill.iter().filter(|_| fill));
-        for (i, light) in lights.enumerate() {
-            let open = f64::from(terminator(light.to_light, site.normal.as_vec3()));
+        let count = if fill { 1 + self.lighting.fill.len() } else { 1 };
+        for (i, light) in self.lighting.all().take(count).enumerate() {
+            let light = Arriving::new(light, site.at_m);
+            let open = f64::from(terminator(light.to_light.as_vec3(), site.normal.as_vec3()));
             if open <= 0.0 {
                 continue;
             }
-            let to_light = light.to_light.as_dvec3().normalize();
-            let angles = Angles::of_dvectors(hair, to_light, to_eye);
-            let depth = self.depth(i, light.to_light, site);
-            sum += light.irradiance.as_dvec3() * scattered(angles) * through(depth) * (angles.cos_in() * open);
+            let angles = Angles::of_dvectors(hair, light.to_light.normalize(), to_eye);
+            let depth = self.depth(i, light.to_light.as_vec3(), site);
+            sum += light.irradiance * scattered(angles) * through(depth) * (angles.cos_in() * open);
         }
         sum
     }
@@ -193,25 +198,28 @@ impl<'a> Shader<'a> {
         f64::from(slant_depth(site.above, to_light, site.normal.as_vec3(), site.lean.as_vec3()))
     }
 
-    /// What stands around hair over a place, `height_m` above the skin.
-    fn site(&self, place: &ShellPoint, height_m: f64, lean: DVec3, key_depth: f64) -> Site {
+    /// What stands around hair at `at_m`, over a place, `height_m` above the skin.
+    fn site(&self, place: &ShellPoint, at_m: DVec3, height_m: f64, lean: DVec3, key_depth: f64) -> Site {
         let fields = self.scene.fields;
         let (density, length) = (self.scalar(&fields.density, place) as f32, self.scalar(&fields.length, place) as f32);
         let above = |fibre| Layer::new(fibre, density, length).above(height_m as f32);
         let own = self.scene.undercoat.map_or(0.0, above);
         let guard = self.scene.guard.map_or(0.0, |(_, fibre)| above(fibre));
-        Site { normal: self.normal(place), lean, above: own + guard, key_depth }
+        Site { at_m, normal: self.normal(place), lean, above: own + guard, key_depth }
     }
 
     /// Optical depth of hair between a place and the key light, up to the first skin.
     fn key_depth(&self, place: &ShellPoint) -> f64 {
-        let to_light = self.lighting.key.to_light;
-        let lit = terminator(to_light, self.normal(place).as_vec3()) > 0.0;
-        let Some(medium) = self.medium.filter(|_| lit) else { return 0.0 };
+        let Some(medium) = self.medium else { return 0.0 };
+        let at_m = medium.slabs.position_m(place);
+        let Arriving { to_light, distance_m, .. } = Arriving::new(&self.lighting.key, at_m);
+        if terminator(to_light.as_vec3(), self.normal(place).as_vec3()) <= 0.0 {
+            return 0.0;
+        }
         let from_m = 1e-7 * self.height_m(place);
-        let ray = Ray::new(medium.slabs.position_m(place), to_light.as_dvec3().normalize());
+        let ray = Ray::new(at_m, to_light.normalize());
         let to_m = self.skin.meet(&ray, from_m).map_or(f64::INFINITY, |(at_m, _)| at_m);
-        medium.depth_along(&ray, from_m, to_m, Counted::Both, DARK)
+        medium.depth_along(&ray, from_m, to_m.min(distance_m), Counted::Both, DARK)
     }
 
     /// The same for a guard hair, which is shadowed as the column over its own root is: a cubic through four heights of it.

@@ -3,7 +3,7 @@
 use crate::asset::material::Wrap;
 use crate::data::coat::{FinEdge, Tile};
 use crate::data::image::Image8;
-use crate::data::light::Directional;
+use crate::data::light::Light;
 use crate::math::{Mat4, Vec2, Vec3, Vec4};
 use std::borrow::Cow;
 
@@ -96,8 +96,8 @@ pub struct Frame {
     pub eye: Vec4,
     /// Pixels: width, height.
     pub size: [u32; 2],
-    /// At most [`MAX_LIGHTS`].
-    pub lights: Vec<Directional>,
+    /// At most [`MAX_LIGHTS`]; positions relative to the same origin as all others.
+    pub lights: Vec<Light>,
     /// Radiance that comes from everywhere, linear RGB.
     pub ambient: Vec3,
 }

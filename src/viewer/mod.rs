@@ -221,7 +221,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &Options, framings: &[Framing]) ->
             clip_from_world: camera.clip_from_world(origin_m, aspect, near_m, far_m).as_mat4(),
             eye: (DVec3::from(camera.eye) - origin_m).as_vec3().extend(1.0),
             size: options.size,
-            lights: if studio { lights } else { options.lights.clone() },
+            lights: if studio { lights } else { options.lights.clone() }.into_iter().map(Into::into).collect(),
             ambient: options.ambient.unwrap_or(if studio { ambient } else { Vec3::ZERO }),
         };
         let drawn = draw(&renderer, &scene, &view, show, &mut recorder)?;

@@ -5,6 +5,7 @@
 //! way of rays from prism to prism; [`medium`] is the same undercoat over a flat square.
 
 pub mod bins;
+pub mod lighting;
 pub mod march;
 pub mod mean;
 pub mod medium;

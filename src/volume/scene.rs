@@ -1,7 +1,7 @@
 //! What a picture shows: skin with its hair, and how much hair lies over a point of it.
 
 use crate::data::fields::Fields;
-use crate::data::light::Directional;
+use crate::data::light::Light;
 use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;
 use crate::fur::groom::fibre::Fibre;
@@ -54,9 +54,9 @@ impl Default for HairScattering {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lighting {
     /// The light whose shadow is followed through the undercoat.
-    pub key: Directional,
+    pub key: Light,
     /// Further lights, shadowed by the hair right above each point; the environment's, as a rule.
-    pub fill: Vec<Directional>,
+    pub fill: Vec<Light>,
     /// Radiance from everywhere, linear RGB.
     pub ambient: Vec3,
     /// Whether the further lights fall on undercoat too (Andersen et al. 2016 §5 leave them out).

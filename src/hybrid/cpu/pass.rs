@@ -53,7 +53,7 @@ impl<'a> Pass<'a> {
         let skin_camera_m: Vec<Vec3> = scene.skin.positions_m.iter().map(|&p| view.camera_from_world(p)).collect();
         let corners = |triangle: &[u32; 3]| triangle.map(|v| skin_camera_m[v as usize]);
         let bare = scene.skin.triangles.iter().map(|triangle| !Flat::new(corners(triangle)).faces_eye()).collect();
-        let undercoat = shadows.map(|shadows| (shadows, UndercoatShader::new(scene, prepared.lighting)));
+        let undercoat = shadows.map(|shadows| (shadows, UndercoatShader::new(scene, prepared.lighting, view.eye_m)));
         let opacity = Table::new(|s| scene.guard.map_or(1.0, |(strands, _)| strands.profile.opacity_at(s)));
         let pieces = scene.guard.map_or(1, |(strands, _)| strands.points_per_strand - 1);
         Self {

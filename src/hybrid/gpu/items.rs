@@ -2,7 +2,7 @@
 
 use crate::data::strands::Strands;
 use crate::math::Vec3;
-use crate::volume::scene::{Lighting, Scene};
+use crate::volume::scene::Scene;
 use bytemuck::{Pod, Zeroable};
 
 /// No triangle, no item: `NOTHING` of `shared/scene.wgsl`.
@@ -97,31 +97,6 @@ impl VertexItem {
                 _pad3: 0.0,
             })
             .collect()
-    }
-}
-
-/// `Light` of `shared/scene.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct LightItem {
-    /// Unit vector towards the light.
-    pub to_light: [f32; 3],
-    pub(super) _pad0: f32,
-    /// Irradiance, linear RGB.
-    pub irradiance: [f32; 3],
-    pub(super) _pad1: f32,
-}
-
-impl LightItem {
-    /// The key light, then the others.
-    pub fn of(lighting: &Lighting) -> Vec<Self> {
-        let item = |light: &crate::data::light::Directional| Self {
-            to_light: light.to_light.to_array(),
-            _pad0: 0.0,
-            irradiance: light.irradiance.to_array(),
-            _pad1: 0.0,
-        };
-        std::iter::once(&lighting.key).chain(&lighting.fill).map(item).collect()
     }
 }
 

@@ -10,10 +10,11 @@ macro_rules! source {
 }
 
 /// Files that others import, imported ones first.
-pub const SHARED: [Source; 16] = [
+pub const SHARED: [Source; 17] = [
     source!("shared/hash.wgsl"),
     source!("shared/noise.wgsl"),
     source!("shared/prism.wgsl"),
+    source!("shared/light.wgsl"),
     source!("shared/scene.wgsl"),
     source!("shared/fur_light.wgsl"),
     source!("shared/mean_shadow.wgsl"),

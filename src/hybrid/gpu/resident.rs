@@ -1,10 +1,11 @@
 //! A scene on the device: skin, hair and lights, and the shell's stored density and shadow.
 
 use super::GpuRenderer;
-use super::items::{AT_BORDER, InsideItem, LINEAR, LightItem, NOTHING, StrandItem, TriangleItem, VertexItem};
+use super::items::{AT_BORDER, InsideItem, LINEAR, NOTHING, StrandItem, TriangleItem, VertexItem};
 use super::layout::{BlocksUniform, SceneUniform};
 use crate::error::Result;
 use crate::gpu::Timer;
+use crate::gpu::light::LightItem;
 use crate::hybrid::prepared::Prepared;
 use crate::hybrid::strands::LOOKS;
 use crate::math::Vec3;
@@ -156,7 +157,8 @@ impl Resident {
         let triangles_buffer = gpu.read_only("triangles", &triangles)?;
         let vertices_buffer = gpu.read_only("vertices", &vertices)?;
         let tables = gpu.read_only("tables", &tables)?;
-        let lights = gpu.read_only("lights", &LightItem::of(lighting))?;
+        let lights: Vec<LightItem> = lighting.all().map(LightItem::from).collect();
+        let lights = gpu.read_only("lights", &lights)?;
         let strands_buffer = gpu.read_only("strands", &strands)?;
         let points_buffer = gpu.read_only("strand points", points)?;
         let layouts = &kernels.layouts;

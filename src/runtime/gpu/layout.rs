@@ -1,20 +1,9 @@
 //! Structs as the shaders read them; `tests/shaders.rs` compares names, offsets and sizes with the WGSL.
 
 use crate::data::coat::{FinEdge, Sampled, Tile};
+use crate::gpu::light::LightItem;
 use crate::runtime::draw_list::{CoatMesh, Frame, MAX_LIGHTS, SkinMesh};
 use bytemuck::{Pod, Zeroable};
-
-/// `Light` of `shared/view.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct LightUniform {
-    /// Unit vector towards the light.
-    pub to_light: [f32; 3],
-    pub(super) _pad0: f32,
-    /// Irradiance, linear RGB.
-    pub irradiance: [f32; 3],
-    pub(super) _pad1: f32,
-}
 
 /// `Frame` of `shared/view.wgsl`.
 #[repr(C)]
@@ -29,16 +18,15 @@ pub struct ViewUniform {
     /// How many of `lights` count.
     pub light_count: u32,
     /// The lights.
-    pub lights: [LightUniform; MAX_LIGHTS],
+    pub lights: [LightItem; MAX_LIGHTS],
 }
 
 impl ViewUniform {
     /// The view's numbers; lights past [`MAX_LIGHTS`] were refused before.
     pub fn new(view: &Frame) -> Self {
-        let mut lights = [LightUniform::default(); MAX_LIGHTS];
+        let mut lights = [LightItem::default(); MAX_LIGHTS];
         for (slot, light) in lights.iter_mut().zip(&view.lights) {
-            slot.to_light = light.to_light.to_array();
-            slot.irradiance = light.irradiance.to_array();
+            *slot = light.into();
         }
         Self {
             clip_from_world: view.clip_from_world.to_cols_array_2d(),

@@ -11,8 +11,12 @@ macro_rules! source {
 }
 
 /// Files that others import, imported ones first.
-pub const SHARED: [Source; 3] =
-    [source!("shared/view.wgsl"), source!("shared/shading.wgsl"), source!("shared/coat.wgsl")];
+pub const SHARED: [Source; 4] = [
+    source!("shared/light.wgsl"),
+    source!("shared/view.wgsl"),
+    source!("shared/shading.wgsl"),
+    source!("shared/coat.wgsl"),
+];
 /// Opaque skin.
 pub const SKIN: Source = source!("runtime/skin.wgsl");
 /// Shells.
