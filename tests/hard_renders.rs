@@ -318,8 +318,9 @@ fn placed(
     scale: f64,
     shift: DVec3,
 ) -> Film {
+    use crate::common::{framing, studio};
     use base64::Engine;
-    use furrier::bake::picture::{Grown, Only, PictureRequest, studio};
+    use furrier::bake::picture::{Grown, Only, PictureRequest};
     let mut document = furrier::asset::load("sample:torus").unwrap().document;
     change(&mut document.json["nodes"][0]);
     let accessor = document.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"].as_u64().unwrap() as usize;
@@ -349,6 +350,6 @@ fn placed(
         pose: None,
     })
     .unwrap();
-    let camera = grown.camera(35.0, 20.0, 1.0, SIZE);
+    let camera = framing(&grown, 35.0, 20.0, 1.0, SIZE);
     grown.draw(&studio(&camera), &camera, &settings()).unwrap().film
 }

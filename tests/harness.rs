@@ -148,7 +148,7 @@ fn twins_tell_a_law_that_is_off_by_a_tenth() {
     let cpu: Vec<f32> = (0..100).map(|i| 0.2 + 0.006 * i as f32).collect();
     let picture = |change: &dyn Fn(f32) -> f32| {
         let pixels = cpu.iter().map(|&a| [0.0, 0.0, 0.0, change(a)]).collect();
-        furrier::runtime::Picture { size: [10, 10], pixels }
+        furrier::runtime::Picture { size: [10, 10], pixels, depth_m: vec![0.0; 100] }
     };
     assert!(alike(difference(&cpu, &picture(&|a| a))));
     // A tenth more optical depth, a constant opacity with the right mean, nothing drawn, a pixel never written.

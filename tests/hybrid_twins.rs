@@ -1,7 +1,8 @@
 //! The hybrid renderer on a graphics device against the same renderer on the CPU, pixel by pixel.
 
+use crate::common::{framing, studio};
 use crate::scenes::{self, Grown};
-use furrier::bake::picture::{self as depicted, Only, PictureRequest, studio};
+use furrier::bake::picture::{self as depicted, Only, PictureRequest};
 use furrier::data::camera::Camera;
 use furrier::data::film::Film;
 use furrier::data::image::Image8;
@@ -15,6 +16,7 @@ use furrier::hybrid::{Settings, draw, prepare};
 use furrier::math::Vec3;
 use furrier::metrics::compare::{Light, compare};
 use furrier::preset::Preset;
+use furrier::stage::background::Background;
 use furrier::stage::tone::{Development, develop};
 use furrier::volume::march::content::Resolution;
 use furrier::volume::scene::{Lighting, Scene};
@@ -28,7 +30,7 @@ pub fn share_alike(a: &Image8, b: &Image8) -> f64 {
 }
 
 fn developed(film: &Film) -> Image8 {
-    develop(film, &Development { background: Some(Vec3::splat(0.2)), ..Development::default() })
+    develop(film, &Development { background: Background::Colour(Vec3::splat(0.2)), ..Development::default() })
 }
 
 fn on_gpu(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Film {
@@ -139,7 +141,7 @@ fn hold_asset(input: &str, pose: Option<(String, f64)>) {
     };
     let grown = depicted::Grown::new(&request).unwrap();
     let settings = Settings { size: [64, 64], ..Settings::default() };
-    let camera = grown.camera(35.0, 20.0, 1.0, settings.size);
+    let camera = framing(&grown, 35.0, 20.0, 1.0, settings.size);
     let lighting = studio(&camera);
     hold(&grown.scene(), &lighting, &camera, &settings);
 }

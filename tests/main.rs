@@ -47,6 +47,7 @@ mod shadows;
 mod silhouette;
 mod sphere;
 mod squares;
+mod stage;
 mod strand_files;
 mod summary;
 mod sweeps;

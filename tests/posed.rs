@@ -1,9 +1,10 @@
 //! Hair on a skin that moves: the same hairs in every pose, and no flicker.
 
 use crate::common::furrier_path;
+use crate::common::{framing, studio};
 use crate::scenes::{self, Grown};
 use assert_cmd::Command;
-use furrier::bake::picture::{self, Only, PictureRequest, studio};
+use furrier::bake::picture::{self, Only, PictureRequest};
 use furrier::bake::units::Units;
 use furrier::data::camera::Camera;
 use furrier::data::film::Film;
@@ -121,8 +122,8 @@ fn an_orbit_flickers_no_more_than_the_truth() {
 #[test]
 fn a_walk_flickers_no_more_than_the_truth() {
     let grown: Vec<picture::Grown> = (0..2).map(|k| creature(Some(0.25 + 0.01 * f64::from(k)))).collect();
-    let camera: Camera = grown[0].camera(35.0, 20.0, 0.5, SIZE);
-    assert_eq!(camera, grown[1].camera(35.0, 20.0, 0.5, SIZE), "the camera stands still");
+    let camera: Camera = framing(&grown[0], 35.0, 20.0, 0.5, SIZE);
+    assert_eq!(camera, framing(&grown[1], 35.0, 20.0, 0.5, SIZE), "the camera stands still");
     let films = |settings: &Settings| -> Vec<Film> {
         grown.iter().map(|grown| grown.draw(&studio(&camera), &camera, settings).unwrap().film).collect()
     };

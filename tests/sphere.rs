@@ -14,7 +14,9 @@ use furrier::fur::grow;
 use furrier::math::Vec3;
 use furrier::preset::Preset;
 use furrier::runtime::Show;
-use furrier::viewer::{Framing, Options, Subject, screenshot};
+use furrier::stage::camera::Viewpoint;
+use furrier::stage::options;
+use furrier::viewer::{Options, Subject, screenshot};
 
 const RADIUS_M: f32 = 0.1;
 const PIXELS: usize = 160;
@@ -77,8 +79,9 @@ fn drawn(preset: &Preset, show: Show, width_m: f32) -> f32 {
     let out = folder.path().join("sphere.glb");
     bake(&request(preset.clone(), &out), &mut |_| {}).unwrap();
     let (asset, coat) = read_coat(&out).unwrap();
-    let framing = Framing::Camera(camera());
-    let options = Options { size: [PIXELS as u32; 2], framing, show: Subject::Coat(show), ..Options::default() };
+    let viewpoint = Viewpoint::Camera(camera());
+    let stage = options::Options { size: [PIXELS as u32; 2], viewpoint, ..options::Options::default() };
+    let options = Options { stage, show: Subject::Coat(show), ..Options::default() };
     let shot = screenshot(&asset, &coat, &options).unwrap();
     ring(&shot.picture.pixels.iter().map(|p| p[3]).collect::<Vec<_>>(), width_m)
 }

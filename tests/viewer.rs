@@ -6,7 +6,9 @@ use furrier::data::camera::Camera;
 use furrier::data::coat::{Coat, CoatPrimitive, Tile};
 use furrier::math::{Vec2, Vec3, Vec4};
 use furrier::runtime::{Picture, Show};
-use furrier::viewer::{self, Chart, Framing, Options, Orbit, Subject, parse_light, parse_show, stage};
+use furrier::stage::camera::{Orbit, Viewpoint};
+use furrier::stage::options;
+use furrier::viewer::{self, Chart, Options, Subject, parse_show, stage};
 
 /// `tile` worn on every part of `asset` that is not bare, hair along the normals, no fins.
 fn dressed(asset: &Asset, tile: Tile) -> Coat {
@@ -41,7 +43,11 @@ fn creature() -> (Asset, Coat) {
 }
 
 fn small() -> Options {
-    Options { size: [96, 72], ..Options::default() }
+    staged([96, 72], Viewpoint::default())
+}
+
+fn staged(size: [u32; 2], viewpoint: Viewpoint) -> Options {
+    Options { stage: options::Options { size, viewpoint, ..options::Options::default() }, ..Options::default() }
 }
 
 /// The rows and columns that hold anything: top, bottom, left, right.
@@ -59,8 +65,8 @@ fn extent(picture: &Picture) -> [usize; 4] {
 fn the_whole_asset_fits_from_every_side() {
     let (asset, coat) = creature();
     for (azimuth_deg, elevation_deg) in [(0.0, 0.0), (35.0, 12.0), (120.0, -40.0), (260.0, 80.0)] {
-        let framing = Framing::Orbit(Orbit { azimuth_deg, elevation_deg, distance: 1.0 });
-        let shot = viewer::screenshot(&asset, &coat, &Options { framing, ..small() }).unwrap();
+        let viewpoint = Viewpoint::Orbit(Orbit { azimuth_deg, elevation_deg, distance: 1.0 });
+        let shot = viewer::screenshot(&asset, &coat, &staged([96, 72], viewpoint)).unwrap();
         let [top, bottom, left, right] = extent(&shot.picture);
         assert!(top > 0 && bottom < 71 && left > 0 && right < 95, "cut off at {azimuth_deg}, {elevation_deg}");
         assert!(bottom - top > 50 || right - left > 70, "small at {azimuth_deg}, {elevation_deg}");
@@ -84,7 +90,7 @@ fn shells_move_with_the_skin() {
     let camera = Camera { eye: at(eye), target: at(middle), up: [0.0, 1.0, 0.0], vfov_deg: 40.0 };
     let shot = |seconds: Option<f64>, show: Show| {
         let moment = seconds.map(|s| (animation.clone(), s));
-        let options = Options { framing: Framing::Camera(camera), show: Subject::Coat(show), moment, ..small() };
+        let options = Options { show: Subject::Coat(show), moment, ..staged([96, 72], Viewpoint::Camera(camera)) };
         viewer::screenshot(&asset, &coat, &options).unwrap().picture
     };
     let difference =
@@ -156,17 +162,6 @@ fn flags_are_read_or_refused() {
     assert_eq!(parse_show("stretch").unwrap(), Subject::Chart(Chart::Stretch));
     assert!(parse_show("skin,field").unwrap_err().expected.unwrap().contains("field alone"));
     assert!(parse_show("skin,hair").unwrap_err().found.unwrap().contains("hair"));
-    let light = parse_light("dir:0,-2,0:1,2,3").unwrap();
-    assert_eq!((light.to_light, light.irradiance), (Vec3::Y, Vec3::new(1.0, 2.0, 3.0)));
-    for bad in
-        ["0,-1,0:1,1,1", "dir:0,0,0:1,1,1", "dir:0,1,0:1,1", "dir:0,1,x:1,1,1", "dir:0,1,0:-1,0,0", "dir:1,1,1,1:1,1,1"]
-    {
-        assert!(parse_light(bad).is_err(), "{bad}");
-    }
-    assert_eq!("90,-10,2".parse::<Orbit>().unwrap(), Orbit { azimuth_deg: 90.0, elevation_deg: -10.0, distance: 2.0 });
-    for bad in ["", "1,2", "1,90,1", "1,2,0", "nan,0,1", "1,2,3,4"] {
-        assert!(bad.parse::<Orbit>().is_err(), "{bad}");
-    }
     assert!(Camera::from_json(r#"{"eye": [0,0,1], "target": [0,0,0]}"#).is_ok());
     for bad in [
         r#"{"eye": [0,0,1], "target": [0,0,1]}"#,
@@ -180,7 +175,7 @@ fn flags_are_read_or_refused() {
 
 /// Share of the seen pixels that `wanted` finds in a chart of the creature.
 fn charted(coat: &Coat, asset: &Asset, chart: Chart, wanted: impl Fn(Vec3) -> bool) -> (f64, Vec<String>) {
-    let options = Options { show: Subject::Chart(chart), size: [320, 240], ..small() };
+    let options = Options { show: Subject::Chart(chart), ..staged([320, 240], Viewpoint::default()) };
     let shot = viewer::screenshot(asset, coat, &options).unwrap();
     let seen: Vec<Vec3> =
         shot.picture.pixels.iter().filter(|p| p[3] > 0.99).map(|p| Vec3::new(p[0], p[1], p[2])).collect();

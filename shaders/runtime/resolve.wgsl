@@ -1,9 +1,15 @@
-// Many samples to one pixel: a box filter in linear light.
+// Many samples to one pixel: a box filter in linear light, and the nearest depth.
 
 @group(0) @binding(0) var samples: texture_2d<f32>;
+@group(0) @binding(1) var depths: texture_depth_multisampled_2d;
 
 // Samples along a pixel's edge.
 override SAMPLES: u32 = 2u;
+
+struct Pixel {
+    @location(0) light: vec4<f32>,
+    @location(1) depth: f32,
+}
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
@@ -13,13 +19,18 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
 }
 
 @fragment
-fn fragment(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
+fn fragment(@builtin(position) at: vec4<f32>) -> Pixel {
     let first = vec2<u32>(at.xy) * SAMPLES;
+    let edge_samples = textureNumSamples(depths);
     var sum = vec4(0.0);
+    var nearest = 1.0;
     for (var y = 0u; y < SAMPLES; y++) {
         for (var x = 0u; x < SAMPLES; x++) {
             sum += textureLoad(samples, first + vec2(x, y), 0);
+            for (var i = 0u; i < edge_samples; i++) {
+                nearest = min(nearest, textureLoad(depths, first + vec2(x, y), i));
+            }
         }
     }
-    return sum / f32(SAMPLES * SAMPLES);
+    return Pixel(sum / f32(SAMPLES * SAMPLES), nearest);
 }

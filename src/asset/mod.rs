@@ -22,6 +22,7 @@ pub mod sample;
 pub mod scene_graph;
 mod select;
 pub mod strands;
+mod subject;
 mod uri;
 mod validate;
 pub mod write;

@@ -24,6 +24,7 @@ use crate::fur::groom::fibre::Fibre;
 use crate::fur::patch::{Parameterisation, parameterise};
 use crate::math::Vec3;
 use crate::math::hash::combine;
+use crate::metrics::timing;
 use crate::preset::Preset;
 use skin::Groomed;
 use std::path::{Path, PathBuf};
@@ -69,15 +70,6 @@ pub struct Request {
     pub judge: bool,
 }
 
-/// One step's time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Timing {
-    /// Step.
-    pub name: &'static str,
-    /// Wall time, ms.
-    pub ms: f64,
-}
-
 /// What was baked.
 #[derive(Clone, Debug)]
 pub struct Baked {
@@ -96,7 +88,7 @@ pub struct Baked {
     /// Coverage of each tile against its strands, when asked for.
     pub accuracy: Vec<Vec<Row>>,
     /// Time per step, in order.
-    pub timings: Vec<Timing>,
+    pub steps: timing::Steps,
 }
 
 /// How one primitive's hair lies.
@@ -115,7 +107,7 @@ pub struct Laid {
 /// Measures steps and tells of them.
 struct Steps<'a> {
     tell: &'a mut dyn FnMut(&'static str),
-    timings: Vec<Timing>,
+    steps: timing::Steps,
 }
 
 impl Steps<'_> {
@@ -123,11 +115,7 @@ impl Steps<'_> {
         (self.tell)(name);
         let start = Instant::now();
         let result = step();
-        let ms = start.elapsed().as_secs_f64() * 1e3;
-        match self.timings.iter_mut().find(|t| t.name == name) {
-            Some(timing) => timing.ms += ms,
-            None => self.timings.push(Timing { name, ms }),
-        }
+        self.steps.add_since(name, start, 0);
         result
     }
 }
@@ -137,7 +125,7 @@ impl Steps<'_> {
 /// # Errors
 /// When the input cannot be used, names something that is not there, or the output cannot be written.
 pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Baked> {
-    let mut steps = Steps { tell, timings: Vec::new() };
+    let mut steps = Steps { tell, steps: timing::Steps::default() };
     let asset = steps.run("read", || asset::load(&request.input))?;
     refuse_second(&asset)?;
     refuse_own_input(&request.input, &request.out)?;
@@ -162,7 +150,7 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
         diagonal_m: scale.diagonal_m,
         laid: Vec::new(),
         accuracy: Vec::new(),
-        timings: Vec::new(),
+        steps: timing::Steps::default(),
     };
     // One tile per preset; primitives with the same preset share it.
     let mut tiles: Vec<(&Preset, Vec<usize>)> = Vec::new();
@@ -212,7 +200,7 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
     notes.extend(steps.run("write", || write_coat(&asset, &coat, request.fallback, &request.out))?);
     baked.coat = coat;
     (baked.notes, baked.warnings) = (notes, warnings);
-    baked.timings = steps.timings;
+    baked.steps = steps.steps;
     Ok(baked)
 }
 

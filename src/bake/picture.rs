@@ -4,10 +4,12 @@ use super::skin::{self, Groomed};
 use super::units::{self, Units};
 use crate::asset;
 use crate::asset::strands::Export;
+use crate::coat::hair::TileHair;
+use crate::coat::wear::{is_furred, offset_over_height};
 use crate::data::camera::Camera;
 use crate::data::film::Film;
-use crate::data::light::Directional;
 use crate::data::mesh::Mesh;
+use crate::data::subject::Subject;
 use crate::error::Result;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::grow;
@@ -17,10 +19,6 @@ use crate::math::{DVec3, Vec3};
 use crate::preset::Preset;
 use crate::reference;
 use crate::volume::scene::{HairScattering, Lighting, Scene};
-use std::f32::consts::PI;
-
-/// Vertical field of view of cameras that frame, degrees.
-const VFOV_DEG: f64 = 34.0;
 
 /// Which hair is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,6 +59,9 @@ pub struct Grown {
     skin_factor: Vec3,
     only: Only,
     metres_per_unit: f64,
+    /// What cameras and lights need to know of the asset. It is that of the rest pose, so that a camera stands still while an
+    /// animation plays.
+    pub subject: Subject,
     /// What a person should know, one sentence each.
     pub notes: Vec<String>,
 }
@@ -84,12 +85,22 @@ impl Grown {
             }
             None => None,
         };
+        let diagonal_m = scale.diagonal_m as f32;
+        let fibre = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
+        let undercoat = Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m);
+        let tile = TileHair::grow(&fibre, &undercoat, preset.shells.tile_mm * 1e-3, request.seed);
+        let mut subject = asset.subject(scale.metres_per_unit)?;
         let mut all: Option<Groomed> = None;
         for (index, part) in asset.parts.iter().enumerate() {
             let mut groomed = skin::groom(&asset, part, preset, &scale)?;
             if !chosen.contains(&index) {
                 groomed.fields.density.fill(0.0);
+                // The renderer tints all skin by the preset's factor, which is not for bare skin.
+                let factor = Vec3::from(preset.colour.skin).max(Vec3::splat(1e-6));
+                let own = skin::bare_colour(&asset, part, &groomed.mesh)?;
+                groomed.fields.tint = own.into_iter().map(|colour| colour / factor).collect();
             }
+            subject.hair_m = subject.hair_m.max(f64::from(reach_m(&groomed, tile.height_m)));
             if let Some(pose) = &pose {
                 groomed = groomed.pose(&asset, part, pose, scale.metres_per_unit)?;
             }
@@ -100,16 +111,15 @@ impl Grown {
             }
         }
         let groomed = all.unwrap_or_else(|| unreachable!("an asset without parts is refused when it is read"));
-        let diagonal_m = scale.diagonal_m as f32;
-        let fibre = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
         let strands = grow::skin::grow(&fibre, &groomed.mesh, &groomed.fields, request.seed);
         Ok(Self {
             guard: (strands, fibre),
-            undercoat: Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m),
+            undercoat,
             skin_factor: Vec3::from(preset.colour.skin),
             only: request.only,
             metres_per_unit: scale.metres_per_unit,
             groomed,
+            subject,
             notes,
         })
     }
@@ -159,44 +169,14 @@ impl Grown {
     pub fn reference(&self, lighting: &Lighting, camera: &Camera, settings: &reference::Settings) -> Result<Film> {
         reference::draw(&self.scene(), lighting, camera, settings)
     }
-
-    /// A camera at an azimuth and elevation that frames skin and hair; `distance` 1 fills the picture's height or width.
-    /// It frames the rest pose, so that it stands still while an animation plays.
-    pub fn camera(&self, azimuth_deg: f32, elevation_deg: f32, distance: f32, size: [usize; 2]) -> Camera {
-        let mesh = &self.groomed.mesh.at_rest();
-        let (low, high) = mesh.bounds_m();
-        let hair_m = self.guard.1.longest_m().max(self.undercoat.longest_m());
-        let (azimuth, elevation) = (azimuth_deg.to_radians(), elevation_deg.clamp(-89.0, 89.0).to_radians());
-        let (sin, cos) = libm::sincosf(elevation);
-        let towards = Vec3::new(libm::sinf(azimuth) * cos, sin, libm::cosf(azimuth) * cos);
-        let target_m = 0.5 * (low + high);
-        // How far each vertex asks the eye to stand back, across and up the picture.
-        let forward = -towards;
-        let right = forward.cross(Vec3::Y).normalize_or(Vec3::X);
-        let up = right.cross(forward);
-        let half = libm::tanf(0.5 * VFOV_DEG.to_radians() as f32);
-        let aspect = size[0] as f32 / size[1] as f32;
-        let back_m = mesh.positions_m.iter().fold(0.0_f32, |back, &p| {
-            let q = p - target_m;
-            let reach = ((q.dot(up).abs() + hair_m) / half).max((q.dot(right).abs() + hair_m) / (half * aspect));
-            back.max(reach - q.dot(forward))
-        });
-        let world = |p: Vec3| (mesh.origin_m + p.as_dvec3()).to_array();
-        Camera {
-            eye: world(target_m + towards * (back_m * distance)),
-            target: world(target_m),
-            up: [0.0, 1.0, 0.0],
-            vfov_deg: VFOV_DEG,
-        }
-    }
 }
 
-/// A key light over the left shoulder of a camera, and a tenth of its light from everywhere.
-pub fn studio(camera: &Camera) -> Lighting {
-    let [right, up, back] = camera.axes().map(|axis| axis.as_vec3());
-    let to_light = (up * 0.8 + back * 0.7 - right * 0.9).normalize();
-    let key = Directional { to_light, irradiance: Vec3::splat(2.2 * PI) }.into();
-    Lighting { key, fill: Vec::new(), ambient: Vec3::splat(0.6), fill_on_undercoat: false }
+/// How far the hair of a part reaches from its skin, m, where it wears a tile `height_m` high: as a bake of it has it.
+fn reach_m(groomed: &Groomed, height_m: f32) -> f32 {
+    let Groomed { mesh, fields, .. } = groomed;
+    let length = |v: usize| offset_over_height(fields, v).length();
+    let furred = mesh.triangles.iter().map(|t| t.map(|v| v as usize)).filter(|t| is_furred(fields, *t));
+    furred.flatten().map(length).fold(0.0, f32::max) * height_m
 }
 
 /// Adds a part's skin and fields to those before it.

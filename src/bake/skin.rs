@@ -93,19 +93,29 @@ fn decode(maps: &preset::Maps) -> Result<Maps> {
     })
 }
 
-/// Hair colour per vertex: base-colour texture, factor and vertex colours; the preset's tint where the asset has none.
+/// Hair colour per vertex: the asset's own; the preset's tint where it has none.
 fn tint(asset: &Asset, part: &Part, mesh: &Mesh, preset: &Preset) -> Result<Vec<Vec3>> {
-    let count = mesh.positions_m.len();
-    if preset.colour.from == ColourSource::Preset {
-        return Ok(vec![Vec3::from(preset.colour.tint); count]);
-    }
+    let own = match preset.colour.from {
+        ColourSource::Preset => None,
+        ColourSource::Asset => own_colour(asset, part, mesh)?,
+    };
+    Ok(own.unwrap_or_else(|| vec![Vec3::from(preset.colour.tint); mesh.positions_m.len()]))
+}
+
+/// Skin colour per vertex of a part that no preset has a say in.
+pub(super) fn bare_colour(asset: &Asset, part: &Part, mesh: &Mesh) -> Result<Vec<Vec3>> {
+    Ok(own_colour(asset, part, mesh)?.unwrap_or_else(|| vec![Vec3::ONE; mesh.positions_m.len()]))
+}
+
+/// Base-colour texture, factor and vertex colours; none where the asset has none of them.
+fn own_colour(asset: &Asset, part: &Part, mesh: &Mesh) -> Result<Option<Vec<Vec3>>> {
     let BaseColour { factor, texture } = &part.base_colour;
     let image = match texture {
         Some(texture) => asset.document.decode_image(texture.image)?.map(|image| (texture, image)),
         None => None,
     };
     if image.is_none() && mesh.colour.is_none() && factor.truncate() == Vec3::ONE {
-        return Ok(vec![Vec3::from(preset.colour.tint); count]);
+        return Ok(None);
     }
     let vertex_colour = |v: usize| mesh.colour.as_ref().map_or(Vec4::ONE, |colour| colour[v]);
     let texel = |v: usize| match &image {
@@ -116,5 +126,5 @@ fn tint(asset: &Asset, part: &Part, mesh: &Mesh, preset: &Preset) -> Result<Vec<
         None => Vec4::ONE,
     };
     let colour = |v: usize| (*factor * vertex_colour(v) * texel(v)).truncate().clamp(Vec3::ZERO, Vec3::ONE);
-    Ok((0..count).map(colour).collect())
+    Ok(Some((0..mesh.positions_m.len()).map(colour).collect()))
 }

@@ -7,7 +7,7 @@ use crate::bake::units::Units;
 use crate::bake::{Baked, Laid, Method, Request, bake};
 use crate::coat::summary::{Summary, summarise};
 use crate::error::{Error, Result};
-use crate::metrics::timing::{SCHEMA_VERSION, Step, peak_bytes};
+use crate::metrics::timing::Report;
 use crate::preset::Preset;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -247,15 +247,10 @@ fn in_pool<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Re
 
 /// What `--report` writes.
 fn report(baked: &Baked, total_ms: f64) -> Value {
-    let steps: Vec<_> = baked.timings.iter().map(|t| Step { name: t.name.to_owned(), ms: t.ms, bytes: 0 }).collect();
     let patches: Vec<_> = baked.laid.iter().map(laid_out).collect();
     let summary = summarise(&baked.coat);
-    json!({
-        "schema_version": SCHEMA_VERSION,
-        "steps": steps,
-        "total_ms": total_ms,
-        "peak_bytes": peak_bytes(),
-        "device": "cpu",
+    let report = Report::new("cpu", baked.steps.clone(), total_ms);
+    let more = json!({
         "counts": {
             "tiles": summary.tiles.len(),
             "texels_used_by_tile": summary.tiles.iter().map(|t| t.texels_used).collect::<Vec<_>>(),
@@ -268,7 +263,8 @@ fn report(baked: &Baked, total_ms: f64) -> Value {
         },
         "error": { "coverage_by_tile": baked.accuracy },
         "patches_by_primitive": patches,
-    })
+    });
+    output::report(&report, more)
 }
 
 /// One primitive's comb and parameterisation (`docs/steps/field.md`, `docs/steps/patch.md`).

@@ -1,4 +1,4 @@
-//! Floor 9: the command line. One file per subcommand: parse, call the library, print.
+//! Floor 10: the command line. One file per subcommand: parse, call the library, print.
 
 mod bake;
 mod compare;
@@ -11,6 +11,7 @@ mod presets;
 mod progress;
 mod render;
 mod report;
+mod stage;
 mod view;
 
 use crate::error::{Kind, Result};

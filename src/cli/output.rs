@@ -1,10 +1,10 @@
 //! Files that the command line writes beside furry assets: pictures and reports, whole or not at all.
 
 use crate::asset::write;
-use crate::data::image::Image8;
 use crate::error::{Error, Kind, Result};
-use image::ImageEncoder;
+use crate::metrics::timing::Report;
 use serde::Serialize;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// Fails, before any work is done, where `path` cannot be written or is one of `others`.
@@ -39,16 +39,13 @@ pub fn json_bytes<T: Serialize>(path: &Path, value: &T) -> Result<Vec<u8>> {
     Ok(text)
 }
 
-/// Writes an RGBA8 image as PNG.
-///
-/// # Errors
-/// Where the file cannot be written.
-pub fn png(path: &Path, image: &Image8) -> Result<()> {
-    let mut bytes = Vec::new();
-    image::codecs::png::PngEncoder::new(&mut bytes)
-        .write_image(&image.pixels, image.width, image.height, image::ExtendedColorType::Rgba8)
-        .map_err(|e| unwritable(path, &e))?;
-    write::whole(path, &bytes, &[])
+/// What `--report` writes: what all reports hold, and `more` members of one command's.
+pub fn report(report: &Report, more: Value) -> Value {
+    let mut all = json!(report);
+    if let (Some(all), Value::Object(more)) = (all.as_object_mut(), more) {
+        all.extend(more);
+    }
+    all
 }
 
 /// Writes encoded bytes.

@@ -3,31 +3,28 @@
 use super::bake::UnitName;
 use super::console::Console;
 use super::output;
+use super::stage::StageArgs;
 use crate::asset::strands;
-use crate::bake::picture::{Grown, Only, PictureRequest, studio};
+use crate::bake::picture::{Grown, Only, PictureRequest};
 use crate::data::camera::Camera;
 use crate::data::film::Layers;
 use crate::error::{Error, Result};
 use crate::hybrid::device::{Device, Drawn};
 use crate::hybrid::resolve::Blending;
 use crate::hybrid::{Picture, Settings};
-use crate::math::{DVec3, Vec3};
-use crate::metrics::timing::Steps;
+use crate::math::DVec3;
+use crate::metrics::timing::{Report, Steps};
 use crate::preset::Preset;
 use crate::reference;
 use crate::stage::defocus::{self, Lens};
-use crate::stage::environment::Environment;
+use crate::stage::file::Format;
+use crate::stage::options::Options;
 use crate::stage::projection::View;
-use crate::stage::tone::{Development, develop};
-use crate::viewer;
 use crate::volume::scene::Lighting;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-
-/// Lights that stand for an environment map (Andersen et al. 2016 §5).
-const ENVIRONMENT_LIGHTS: usize = 16;
 
 /// Draw fur hair by hair, over an undercoat followed as a volume
 #[derive(Debug, Args)]
@@ -60,27 +57,11 @@ pub struct Render {
     /// What a unit of the file means
     #[arg(long, value_enum, default_value = "auto")]
     units: UnitName,
-    /// Pixels
-    #[arg(long, value_name = "WxH", default_value = "1024x1024")]
-    size: String,
-    /// Degrees around and above, and a factor on the distance at which the asset just fits
-    #[arg(long, value_name = "AZ,EL,DIST", allow_hyphen_values = true, default_value = "35,20,1")]
-    orbit: String,
-    /// A camera file
-    #[arg(long, value_name = "FILE.json")]
-    camera: Option<PathBuf>,
-    /// An environment map whose light falls on the guard hair
-    #[arg(long, value_name = "FILE.hdr|exr")]
-    env: Option<PathBuf>,
-    /// Let the environment's light fall on the undercoat too
+    #[command(flatten)]
+    stage: StageArgs,
+    /// Let the environment's light fall on the undercoat too, not on guard hair and skin alone
     #[arg(long, requires = "env")]
     env_on_undercoat: bool,
-    /// The key light: the direction it travels, its irradiance in linear RGB; further ones are shadowed less exactly
-    #[arg(long = "light", value_name = "dir:X,Y,Z:R,G,B")]
-    lights: Vec<String>,
-    /// Light from everywhere, radiance in linear RGB
-    #[arg(long, value_name = "R,G,B")]
-    ambient: Option<String>,
     /// What draws: a hardware GPU where there is one, the CPU, or a GPU, software ones too, by a part of its name
     #[arg(long, value_name = "auto|cpu|gpu[:NAME]", default_value = "auto")]
     device: String,
@@ -105,9 +86,6 @@ pub struct Render {
     /// The distance that is sharp, m from the eye along its line of sight [default: what stands in the middle]
     #[arg(long, value_name = "M", requires = "f_number")]
     focus: Option<f32>,
-    /// Stops of exposure, for a .png
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_hyphen_values = true)]
-    exposure: f32,
     /// Decides all that is random
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -148,13 +126,7 @@ impl Render {
     /// # Errors
     /// Where the input, an option or a parameter cannot be used, or a file not written.
     pub fn run(self, console: &Console) -> Result<()> {
-        let kind = self.output.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-        if kind != "png" && kind != "exr" {
-            return Err(Error::usage("the picture's kind is unknown")
-                .with_field("--output")
-                .with_found(self.output.display())
-                .with_expected("a name that ends in .png or .exr"));
-        }
+        let format = Format::of(&self.output, "--output")?;
         output::check(&self.output, &[Path::new(&self.input)])?;
         let strands = self.export_strands.as_deref().map(|file| Ok((file, strands::Format::of(file)?))).transpose()?;
         if let Some((file, _)) = &strands {
@@ -165,18 +137,19 @@ impl Render {
             others.extend(strands.map(|(file, _)| file));
             output::check(file, &others)?;
         }
-        let size = super::view::size(&self.size)?.map(|n| n as usize);
+        let stage = Options { environment_on_undercoat: self.env_on_undercoat, ..self.stage.options()? };
+        let size = stage.size.map(|n| n as usize);
         let device = self.device.parse::<Device>()?;
         let grown = Grown::new(&self.request()?)?;
         grown.notes.iter().for_each(|note| console.note(note));
-        let camera = self.camera(&grown, size)?;
-        let lighting = self.lighting(&camera)?;
+        let camera = stage.camera(&grown.subject)?;
+        let lighting = Lighting::new(&stage.lit(&grown.subject, &camera)?);
         self.check_lens()?;
         let mut drawn = match self.quality {
             Quality::Reference => self.reference(&grown, &lighting, &camera, size)?,
             _ => {
-                let layers = match (kind.as_str(), self.f_number) {
-                    ("exr", _) => Layers::All,
+                let layers = match (format, self.f_number) {
+                    (Format::Exr, _) => Layers::All,
                     (_, Some(_)) => Layers::LightAndDepth,
                     (_, None) => Layers::Light,
                 };
@@ -186,12 +159,7 @@ impl Render {
         drawn.notes.iter().for_each(|note| console.warning(note));
         self.defocus(&mut drawn.picture, &camera, &grown)?;
         let picture = &drawn.picture;
-        if kind == "exr" {
-            output::bytes(&self.output, &crate::stage::exr::encode(&picture.film)?)?;
-        } else {
-            let development = Development { exposure_ev: self.exposure, ..Development::default() };
-            output::png(&self.output, &develop(&picture.film, &development))?;
-        }
+        output::bytes(&self.output, &format.encode(&picture.film, &stage.development)?)?;
         if let Some((file, format)) = strands {
             let name = Path::new(&self.input).file_stem().and_then(|name| name.to_str()).unwrap_or("fur");
             let name = name.strip_prefix("sample:").unwrap_or(name);
@@ -223,38 +191,6 @@ impl Render {
                 Hair::Hybrid => Only::Hybrid,
             },
         })
-    }
-
-    fn camera(&self, grown: &Grown, size: [usize; 2]) -> Result<Camera> {
-        if let Some(file) = &self.camera {
-            return super::view::read_camera(file);
-        }
-        let [azimuth, elevation, distance] = viewer::parse_triple(&self.orbit, "--orbit")?.to_array();
-        Ok(grown.camera(azimuth, elevation, distance, size))
-    }
-
-    fn lighting(&self, camera: &Camera) -> Result<Lighting> {
-        let mut lighting = studio(camera);
-        let mut given = Vec::new();
-        for text in &self.lights {
-            given.push(viewer::parse_light(text)?);
-        }
-        if let Some(file) = &self.env {
-            let mut lights = Environment::read(file)?.median_cut(ENVIRONMENT_LIGHTS);
-            // Without a light of its own, the picture's key is the map's strongest.
-            lights.sort_by(|a, b| b.irradiance.element_sum().total_cmp(&a.irradiance.element_sum()));
-            given.extend(lights);
-            lighting.ambient = Vec3::ZERO;
-            lighting.fill_on_undercoat = self.env_on_undercoat;
-        }
-        if !given.is_empty() {
-            lighting.key = given.remove(0).into();
-            lighting.fill = given.into_iter().map(Into::into).collect();
-        }
-        if let Some(ambient) = &self.ambient {
-            lighting.ambient = viewer::parse_triple(ambient, "--ambient")?;
-        }
-        Ok(lighting)
     }
 
     fn check_lens(&self) -> Result<()> {
@@ -325,19 +261,15 @@ fn pose(text: &str) -> Result<(String, f64)> {
 fn report(drawn: &Drawn) -> Value {
     let picture = &drawn.picture;
     let counts = &picture.counts;
-    json!({
-        "schema_version": 1,
-        "steps": picture.steps,
-        "total_ms": picture.steps.total_ms(),
-        "device": drawn.device,
-        "notes": drawn.notes,
-        "counts": {
-            "strands": counts.strands,
-            "pieces": counts.pieces,
-            "fragments": counts.fragments,
-            "steps": counts.steps,
-            "subelements": counts.subelements,
-        },
-        "coverage": picture.film.coverage(),
-    })
+    let mut report = Report::new(&drawn.device, picture.steps.clone(), picture.steps.total_ms());
+    for (name, count) in [
+        ("strands", counts.strands),
+        ("pieces", counts.pieces),
+        ("fragments", counts.fragments),
+        ("steps", counts.steps),
+        ("subelements", counts.subelements),
+    ] {
+        report.count(name, count);
+    }
+    output::report(&report, json!({ "notes": drawn.notes, "coverage": picture.film.coverage() }))
 }

@@ -3,13 +3,15 @@
 use super::bake::UnitName;
 use super::console::Console;
 use super::output;
+use super::stage::StageArgs;
 use crate::asset::write;
 use crate::bake::picture::{Grown, Only, PictureRequest};
 use crate::error::{Error, Result};
 use crate::metrics::compare::load;
 use crate::preset::Preset;
 use crate::report::{plot, render, table};
-use crate::viewer;
+use crate::stage::file::Format;
+use crate::volume::scene::Lighting;
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 
@@ -17,7 +19,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:
-  furrier report render sample:hat -o hat.json --preset mink
+  furrier report render sample:hat -o hat.json --preset mink --size 256x256
   furrier report render bunny.glb -o bunny.json --size 512x512 --repeats 3")]
 pub struct Report {
     #[command(subcommand)]
@@ -33,13 +35,13 @@ enum What {
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Example:
-  furrier report render sample:hat -o hat.json --preset mink
+  furrier report render sample:hat -o hat.json --preset mink --size 256x256
 
-Beside hat.json stand hat.csv and hat.svg. Errors are against the finest setting or --reference; times are of drawing alone.")]
+Beside hat.json stand hat.csv, hat.svg and hat.png, which is what the defaults of final draw. Errors are against the finest setting or --reference; times are of drawing alone.")]
 struct Render {
     /// A glTF or OBJ file, or sample:NAME
     input: String,
-    /// The report to write; a .csv and a .svg go beside it
+    /// The report to write; a .csv, a .svg and a .png go beside it
     #[arg(short, long, value_name = "OUT.json")]
     output: PathBuf,
     /// A built-in preset or a TOML file
@@ -51,12 +53,8 @@ struct Render {
     /// What a unit of the file means
     #[arg(long, value_enum, default_value = "auto")]
     units: UnitName,
-    /// Pixels
-    #[arg(long, value_name = "WxH", default_value = "256x256")]
-    size: String,
-    /// Degrees around and above, and a factor on the distance at which the asset just fits
-    #[arg(long, value_name = "AZ,EL,DIST", allow_hyphen_values = true, default_value = "35,20,1")]
-    orbit: String,
+    #[command(flatten)]
+    stage: StageArgs,
     /// Runs of each setting; the quickest counts
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=100))]
     repeats: u32,
@@ -88,11 +86,12 @@ impl Render {
                 .with_found(self.output.display())
                 .with_expected("a name that ends in .json"));
         }
-        let [csv, svg] = ["csv", "svg"].map(|kind| self.output.with_extension(kind));
-        for file in [&self.output, &csv, &svg] {
+        let [csv, svg, png] = ["csv", "svg", "png"].map(|kind| self.output.with_extension(kind));
+        for file in [&self.output, &csv, &svg, &png] {
             output::check(file, &[Path::new(&self.input)])?;
         }
-        let size = super::view::size(&self.size)?.map(|n| n as usize);
+        let stage = self.stage.options()?;
+        let size = stage.size.map(|n| n as usize);
         let load_named = |path: &PathBuf| -> Result<_> { Ok((path.display().to_string(), load(path)?)) };
         let reference = self.reference.as_ref().map(load_named).transpose()?;
         let grown = Grown::new(&PictureRequest {
@@ -105,11 +104,12 @@ impl Render {
             pose: None,
         })?;
         grown.notes.iter().for_each(|note| console.note(note));
-        let [azimuth, elevation, distance] = viewer::parse_triple(&self.orbit, "--orbit")?.to_array();
+        let camera = stage.camera(&grown.subject)?;
         let options = render::Options {
             input: self.input.clone(),
             size,
-            camera: grown.camera(azimuth, elevation, distance, size),
+            lighting: Lighting::new(&stage.lit(&grown.subject, &camera)?),
+            camera,
             repeats: self.repeats,
             reference,
         };
@@ -119,8 +119,12 @@ impl Render {
         let error = format!("FLIP against {}", sweep.yardstick.name);
         let plot = plot::svg(&title, &error, &sweep.points);
         let json = output::json_bytes(&self.output, &sweep)?;
-        let files =
-            [(csv, table::csv(&sweep.points).into_bytes()), (svg, plot.into_bytes()), (self.output.clone(), json)];
+        let files = [
+            (csv, table::csv(&sweep.points).into_bytes()),
+            (svg, plot.into_bytes()),
+            (png, Format::Png.encode(&sweep.picture, &stage.development)?),
+            (self.output.clone(), json),
+        ];
         let files: Vec<(PathBuf, &[u8])> = files.iter().map(|(path, bytes)| (path.clone(), bytes.as_slice())).collect();
         write::all(&files, &[PathBuf::from(&self.input)])?;
         console.result(&sweep, |out| {

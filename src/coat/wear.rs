@@ -15,6 +15,11 @@ pub fn offset_over_height(fields: &Fields, v: usize) -> Vec3 {
     fields.lean[v] * fields.length[v].max(SHORTEST)
 }
 
+/// Whether hair grows on a triangle of these skin vertices.
+pub fn is_furred(fields: &Fields, triangle: [usize; 3]) -> bool {
+    triangle.iter().any(|&v| fields.length[v] > SHORTEST && fields.density[v] > 0.0)
+}
+
 /// What a primitive wears, from its mesh, its fields and its patches. `local_offset` takes a skin vertex and a world
 /// offset in metres to the base primitive's own space; `axes` has the tile's x axis for each (see [`axes`](super::axes::axes)).
 pub fn wear(
@@ -29,12 +34,7 @@ pub fn wear(
     let of = |v: &u32| *v as usize;
     let positions_m: Vec<Vec3> = patches.base_vertex.iter().map(|v| mesh.positions_m[of(v)]).collect();
     let position_class: Vec<u32> = patches.base_vertex.iter().map(|v| mesh.position_class[of(v)]).collect();
-    let furred = |triangle: &&[u32; 3]| {
-        triangle.iter().any(|&v| {
-            let base = of(&patches.base_vertex[v as usize]);
-            fields.length[base] > SHORTEST && fields.density[base] > 0.0
-        })
-    };
+    let furred = |triangle: &&[u32; 3]| is_furred(fields, triangle.map(|v| of(&patches.base_vertex[v as usize])));
     let triangles: Vec<[u32; 3]> = patches.triangles.iter().filter(furred).copied().collect();
     let surface = Surface { positions_m: &positions_m, position_class: &position_class, triangles: &triangles };
     let offset = |v: usize| offset_over_height(fields, v) * tile.height_m;

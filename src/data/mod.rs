@@ -10,4 +10,5 @@ pub mod mesh;
 pub mod patches;
 pub mod ray;
 pub mod strands;
+pub mod subject;
 pub mod topology;

@@ -136,7 +136,7 @@ impl Gpu {
         Ok(TextureArray { view, bytes: bytes.len() as u64 })
     }
 
-    /// A texture to draw into and, with one sample per texel, to read in shaders or back.
+    /// A texture to draw into, to read in shaders and, with one sample per texel, to read back.
     ///
     /// # Errors
     /// [`Kind::Usage`] where it is larger than the adapter allows.
@@ -162,23 +162,23 @@ impl Gpu {
             sample_count: samples,
             dimension: wgpu::TextureDimension::D2,
             format,
-            usage: if samples > 1 {
-                wgpu::TextureUsages::RENDER_ATTACHMENT
-            } else {
-                wgpu::TextureUsages::RENDER_ATTACHMENT
-                    | wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::COPY_SRC
-            },
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | if samples > 1 { wgpu::TextureUsages::empty() } else { wgpu::TextureUsages::COPY_SRC },
             view_formats: &[],
         }))
     }
 
-    /// The texels of a target of format `Rgba32Float`, rows from the top. Submits `encoder` first.
+    /// The texels of a target whose format is laid out as `T`, rows from the top. Submits `encoder` first.
     ///
     /// # Errors
     /// [`Kind::Device`] as [`Gpu::finish`].
-    pub fn read_rgba32(&self, mut encoder: wgpu::CommandEncoder, texture: &wgpu::Texture) -> Result<Vec<[f32; 4]>> {
-        let row_bytes = texture.width() * 16;
+    pub fn read_texels<T: bytemuck::Pod>(
+        &self,
+        mut encoder: wgpu::CommandEncoder,
+        texture: &wgpu::Texture,
+    ) -> Result<Vec<T>> {
+        let row_bytes = texture.width() * size_of::<T>() as u32;
         let padded = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("read back"),
@@ -198,7 +198,7 @@ impl Gpu {
         let bytes = self.read_buffer(&buffer)?;
         Ok(bytes
             .chunks_exact(padded as usize)
-            .flat_map(|row| bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&row[..row_bytes as usize]))
+            .flat_map(|row| bytemuck::pod_collect_to_vec::<u8, T>(&row[..row_bytes as usize]))
             .collect())
     }
 

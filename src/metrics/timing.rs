@@ -80,6 +80,26 @@ pub struct Report {
     pub error: BTreeMap<String, f64>,
 }
 
+impl Report {
+    /// Of steps that are done and took `total_ms` together.
+    pub fn new(device: impl Into<String>, steps: Steps, total_ms: f64) -> Self {
+        Self {
+            schema_version: SCHEMA_VERSION,
+            steps,
+            total_ms,
+            peak_bytes: peak_bytes(),
+            device: device.into(),
+            counts: BTreeMap::new(),
+            error: BTreeMap::new(),
+        }
+    }
+
+    /// Adds to a count.
+    pub fn count(&mut self, name: &str, more: u64) {
+        *self.counts.entry(name.to_owned()).or_default() += more;
+    }
+}
+
 /// A report in the making.
 #[derive(Debug)]
 pub struct Recorder {
@@ -90,16 +110,7 @@ pub struct Recorder {
 impl Recorder {
     /// Starts the clock.
     pub fn new(device: impl Into<String>) -> Self {
-        let report = Report {
-            schema_version: SCHEMA_VERSION,
-            steps: Steps::default(),
-            total_ms: 0.0,
-            peak_bytes: None,
-            device: device.into(),
-            counts: BTreeMap::new(),
-            error: BTreeMap::new(),
-        };
-        Self { start: Instant::now(), report }
+        Self { start: Instant::now(), report: Report::new(device, Steps::default(), 0.0) }
     }
 
     /// Does `work` as the step `name`; `bytes` says what its result holds.
@@ -117,7 +128,7 @@ impl Recorder {
 
     /// Adds to a count.
     pub fn count(&mut self, name: &str, more: u64) {
-        *self.report.counts.entry(name.to_owned()).or_default() += more;
+        self.report.count(name, more);
     }
 
     /// Sets an error against a reference.

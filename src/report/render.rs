@@ -1,7 +1,7 @@
 //! The hybrid renderer's settings against what they cost.
 
 use super::{Point, mark_front};
-use crate::bake::picture::{Grown, studio};
+use crate::bake::picture::Grown;
 use crate::data::camera::Camera;
 use crate::data::film::Film;
 use crate::error::Result;
@@ -11,6 +11,7 @@ use crate::metrics::compare::{Light, compare};
 use crate::metrics::timing::SCHEMA_VERSION;
 use crate::volume::march::Stepping;
 use crate::volume::march::content::Resolution;
+use crate::volume::scene::Lighting;
 use serde::Serialize;
 
 /// What errors are measured against, and its own noise.
@@ -39,6 +40,9 @@ pub struct Sweep {
     pub yardstick: Yardstick,
     /// One per way to draw it; the defaults of preview and final first.
     pub points: Vec<Point>,
+    /// What the defaults of final draw.
+    #[serde(skip)]
+    pub picture: Film,
 }
 
 /// How to sweep.
@@ -50,6 +54,8 @@ pub struct Options {
     pub size: [usize; 2],
     /// Where from.
     pub camera: Camera,
+    /// What falls on it.
+    pub lighting: Lighting,
     /// Runs per point, at least 1; the quickest counts.
     pub repeats: u32,
     /// What to measure against and what it is called, of the same size and view; else the finest setting is.
@@ -88,8 +94,7 @@ const CONTROLS: [(&str, &[f64], Change); 11] = [
 /// # Errors
 /// As [`Grown::draw`], or where the reference is of another size; `progress` is told what is being drawn.
 pub fn sweep(grown: &Grown, options: &Options, progress: &mut dyn FnMut(&str)) -> Result<Sweep> {
-    let lighting = studio(&options.camera);
-    let draw = |settings: &Settings| grown.draw(&lighting, &options.camera, settings);
+    let draw = |settings: &Settings| grown.draw(&options.lighting, &options.camera, settings);
     let drawn;
     let (truth, yardstick) = match &options.reference {
         Some((name, light)) => (light, Yardstick { name: name.clone(), ms: None }),
@@ -100,7 +105,7 @@ pub fn sweep(grown: &Grown, options: &Options, progress: &mut dyn FnMut(&str)) -
             (&drawn, Yardstick { name: "the finest setting".into(), ms: Some(ms(&finest)) })
         }
     };
-    let mut points = Vec::new();
+    let (mut points, mut shown) = (Vec::new(), Film::default());
     for way in ways(options.size) {
         progress(&format!("{} = {}", way.sweep, way.value));
         let mut best: Option<Picture> = None;
@@ -110,7 +115,12 @@ pub fn sweep(grown: &Grown, options: &Options, progress: &mut dyn FnMut(&str)) -
                 best = Some(picture);
             }
         }
-        points.extend(best.map(|picture| point(&way, &picture, truth)).transpose()?);
+        if let Some(picture) = best {
+            points.push(point(&way, &picture, truth)?);
+            if way.defaults == Some("final") {
+                shown = picture.film;
+            }
+        }
     }
     mark_front(&mut points);
     Ok(Sweep {
@@ -121,6 +131,7 @@ pub fn sweep(grown: &Grown, options: &Options, progress: &mut dyn FnMut(&str)) -
         repeats: options.repeats.max(1),
         yardstick,
         points,
+        picture: shown,
     })
 }
 

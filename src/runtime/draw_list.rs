@@ -2,6 +2,7 @@
 
 use crate::asset::material::Wrap;
 use crate::data::coat::{FinEdge, Tile};
+use crate::data::film::Film;
 use crate::data::image::Image8;
 use crate::data::light::Light;
 use crate::math::{Mat4, Vec2, Vec3, Vec4};
@@ -102,6 +103,35 @@ pub struct Frame {
     pub ambient: Vec3,
 }
 
+impl Frame {
+    /// Distances along each pixel's ray, m, from depths in [0, 1] at the pixels' middles, rows from the top: 0 where nothing is
+    /// before the far plane. In an orthographic picture they begin at the near plane.
+    ///
+    /// Of a point (p, 1), the matrix gives z = row₂ and w = row₃; both vary along the line of sight alone, z = a w + b, so a depth
+    /// d = z/w lies at w = b/(d − a).
+    pub fn distances_m(&self, depths: &[f32]) -> Vec<f32> {
+        let rows = [0, 1, 2, 3].map(|i| self.clip_from_world.row(i));
+        let [across, upward, inward, forward] = rows.map(|row| row.truncate());
+        let along = forward.length_squared();
+        let [width, height] = self.size.map(|n| n as f32);
+        let distance = |(i, &depth): (usize, &f32)| {
+            if depth >= 1.0 {
+                return 0.0;
+            }
+            if along == 0.0 {
+                return depth / inward.length();
+            }
+            let slope = inward.dot(forward) / along;
+            let offset = rows[2].w - slope * rows[3].w;
+            let (x, y) = ((i as u32 % self.size[0]) as f32 + 0.5, (i as u32 / self.size[0]) as f32 + 0.5);
+            let sideways =
+                Vec2::new(2.0 * x / width - 1.0, 1.0 - 2.0 * y / height) / Vec2::new(across.length(), upward.length());
+            offset / (depth - slope) * (1.0 + sideways.length_squared()).sqrt()
+        };
+        depths.iter().enumerate().map(distance).collect()
+    }
+}
+
 /// A drawn picture: linear light, premultiplied by alpha.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
@@ -109,9 +139,24 @@ pub struct Picture {
     pub size: [u32; 2],
     /// Radiance and coverage, rows from the top.
     pub pixels: Vec<[f32; 4]>,
+    /// Distance along the ray to the nearest surface that hides what is behind it (skin, near shells where they are dense),
+    /// m; 0 where there is none.
+    pub depth_m: Vec<f32>,
 }
 
 impl Picture {
+    /// As a film of light and depth.
+    pub fn film(&self) -> Film {
+        Film {
+            width: self.size[0] as usize,
+            height: self.size[1] as usize,
+            radiance: self.pixels.iter().map(|&[r, g, b, _]| Vec3::new(r, g, b)).collect(),
+            alpha: self.pixels.iter().map(|pixel| pixel[3]).collect(),
+            depth_m: self.depth_m.clone(),
+            ..Film::default()
+        }
+    }
+
     /// Mean alpha.
     pub fn coverage(&self) -> f64 {
         self.pixels.iter().map(|pixel| f64::from(pixel[3])).sum::<f64>() / self.pixels.len().max(1) as f64

@@ -7,14 +7,17 @@ use exr::prelude::*;
 use std::io::Cursor;
 
 /// Encodes a film as one scan-line image of 32-bit floats. Channels: `R G B A` (radiance, premultiplied), `Z` (mean distance,
-/// m), `normal.XYZ` and `tangent.XYZ` (world axes), `albedo.RGB`, `guard` and `undercoat` (their parts of A).
+/// m), `normal.XYZ` and `tangent.XYZ` (world axes), `albedo.RGB`, `guard` and `undercoat` (their parts of A); those of layers
+/// that the film does not have are left out.
 ///
 /// # Errors
 /// Where the film is too large to encode.
 pub fn encode(film: &Film) -> Result<Vec<u8>> {
     let mut channels = SmallVec::new();
     let mut add = |name: &str, values: Vec<f32>| {
-        channels.push(AnyChannel::new(name, FlatSamples::F32(values)));
+        if !values.is_empty() {
+            channels.push(AnyChannel::new(name, FlatSamples::F32(values)));
+        }
     };
     let axis = |values: &[Vec3], i: usize| values.iter().map(|v| v[i]).collect::<Vec<f32>>();
     let vectors = [

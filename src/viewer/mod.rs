@@ -1,62 +1,49 @@
-//! Floor 8: pictures of a coat or of how it lies: one, or several around it on a contact sheet.
+//! Floor 9: pictures of a coat or of how it lies: one, or several around it on a contact sheet.
 
-pub mod camera;
 pub mod chart;
-pub mod develop;
-pub mod light;
 pub mod stage;
+pub mod subject;
 
-pub use camera::{Framing, Orbit};
 pub use chart::Chart;
-pub use develop::Background;
-pub use light::{parse_light, parse_triple};
 
 use crate::asset::Asset;
 use crate::data::coat::Coat;
 use crate::data::image::Image8;
-use crate::data::light::Directional;
 use crate::error::{Error, Result};
 use crate::gpu::{Choice, Gpu};
 use crate::math::{DVec3, Vec3};
 use crate::metrics::timing::{Recorder, Report};
 use crate::runtime::gpu::{Drawn, Renderer};
 use crate::runtime::{DrawList, Frame, Picture, Show};
+use crate::stage::camera::{Orbit, Viewpoint, depth_range_m};
+use crate::stage::file::Format;
+use crate::stage::light::Lit;
+use crate::stage::{exr, options, png, tone};
+use subject::subject;
 
 /// How to look at a coat.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Which adapter draws.
     pub device: Choice,
-    /// Pixels: width, height, each 1 to 16384 as far as the adapter goes.
-    pub size: [u32; 2],
-    /// From where.
-    pub framing: Framing,
-    /// Lights; none means the studio's.
-    pub lights: Vec<Directional>,
-    /// Radiance from everywhere, linear RGB; `None` means the studio's, or none where lights are given.
-    pub ambient: Option<Vec3>,
+    /// Camera, light and development.
+    pub stage: options::Options,
     /// What to draw.
     pub show: Subject,
     /// Animation by name or number, and seconds into it; `None` is the rest pose.
     pub moment: Option<(String, f64)>,
     /// Shading samples along a pixel's edge, 1 to 8. Edges are sampled four times as often in any case.
     pub samples: u32,
-    /// What is behind the asset.
-    pub background: Background,
 }
 
 impl Default for Options {
     fn default() -> Self {
         Self {
             device: Choice::Auto,
-            size: [1024, 1024],
-            framing: Framing::default(),
-            lights: vec![],
-            ambient: None,
+            stage: options::Options::default(),
             show: Subject::default(),
             moment: None,
             samples: 1,
-            background: Background::default(),
         }
     }
 }
@@ -87,6 +74,19 @@ pub struct Shot {
     pub report: Report,
     /// What the colours of a chart mean, one sentence each.
     pub legend: Vec<String>,
+}
+
+impl Shot {
+    /// As a file of this kind: developed, or the light and depth as they are.
+    ///
+    /// # Errors
+    /// Where the picture is too large for the format.
+    pub fn encode(&self, format: Format) -> Result<Vec<u8>> {
+        match format {
+            Format::Png => png::encode(&self.image),
+            Format::Exr => exr::encode(&self.picture.film()),
+        }
+    }
 }
 
 /// Reads `--show`: some of `skin`, `shells`, `fins`, with commas between, or one of `field`, `patches`, `stretch` alone.
@@ -132,16 +132,15 @@ pub fn parse_show(text: &str) -> Result<Subject> {
 /// [`crate::error::Kind::Device`] without an adapter, naming the package that brings one; [`crate::error::Kind::Usage`] for an
 /// unknown animation or a size that does not fit; [`crate::error::Kind::Input`] for broken textures.
 pub fn screenshot(asset: &Asset, coat: &Coat, options: &Options) -> Result<Shot> {
-    let mut shots = shoot(asset, coat, options, &[options.framing])?;
+    let mut shots = shoot(asset, coat, options, std::slice::from_ref(&options.stage.viewpoint))?;
     let picture = shots.pictures.remove(0);
-    let image = shots.recorder.step("develop", || develop::develop(&picture, options.background), bytes_of);
-    Ok(Shot { picture, image, report: shots.recorder.finish(), legend: shots.legend })
+    Ok(shots.developed(picture, options))
 }
 
 /// A contact sheet of `views` pictures, 1 to 64, evenly around the asset, row by row.
 ///
 /// # Errors
-/// As [`screenshot`]; [`crate::error::Kind::Usage`] for a number of views out of range, or a camera file, which cannot turn.
+/// As [`screenshot`]; [`crate::error::Kind::Usage`] for a number of views out of range, or a camera, which cannot turn.
 pub fn turntable(asset: &Asset, coat: &Coat, options: &Options, views: u32) -> Result<Shot> {
     if !(1..=64).contains(&views) {
         return Err(Error::usage("the number of views is out of range")
@@ -149,19 +148,18 @@ pub fn turntable(asset: &Asset, coat: &Coat, options: &Options, views: u32) -> R
             .with_found(views)
             .with_expected("1 to 64"));
     }
-    let Framing::Orbit(orbit) = options.framing else {
+    let Viewpoint::Orbit(orbit) = options.stage.viewpoint else {
         return Err(Error::usage("a turntable turns by itself")
             .with_field("--camera")
-            .with_found("a camera file")
+            .with_found("a camera")
             .with_expected("no camera, or `--orbit`"));
     };
     let turned = |i| Orbit { azimuth_deg: orbit.azimuth_deg + 360.0 * f64::from(i) / f64::from(views), ..orbit };
-    let framings: Vec<_> = (0..views).map(|i| Framing::Orbit(turned(i))).collect();
-    let mut shots = shoot(asset, coat, options, &framings)?;
+    let viewpoints: Vec<_> = (0..views).map(|i| Viewpoint::Orbit(turned(i))).collect();
+    let shots = shoot(asset, coat, options, &viewpoints)?;
     let columns = f64::from(views).sqrt().ceil() as u32;
     let picture = sheet(&shots.pictures, columns);
-    let image = shots.recorder.step("develop", || develop::develop(&picture, options.background), bytes_of);
-    Ok(Shot { picture, image, report: shots.recorder.finish(), legend: shots.legend })
+    Ok(shots.developed(picture, options))
 }
 
 fn bytes_of(image: &Image8) -> u64 {
@@ -174,7 +172,15 @@ struct Shots {
     legend: Vec<String>,
 }
 
-fn shoot(asset: &Asset, coat: &Coat, options: &Options, framings: &[Framing]) -> Result<Shots> {
+impl Shots {
+    fn developed(mut self, picture: Picture, options: &Options) -> Shot {
+        let develop = || tone::develop(&picture.film(), &options.stage.development);
+        let image = self.recorder.step("develop", develop, bytes_of);
+        Shot { picture, image, report: self.recorder.finish(), legend: self.legend }
+    }
+}
+
+fn shoot(asset: &Asset, coat: &Coat, options: &Options, viewpoints: &[Viewpoint]) -> Result<Shots> {
     let mut recorder = Recorder::new("");
     let gpu = recorder.step("open device", || Gpu::open(&options.device), |_| 0)?;
     recorder.device(gpu.adapter.to_string());
@@ -198,31 +204,33 @@ fn shoot(asset: &Asset, coat: &Coat, options: &Options, framings: &[Framing]) ->
     };
     let (scene, show, legend) = recorder.step("pose", staged, |_| 0)?;
     let charted = matches!(options.show, Subject::Chart(_));
-    let origin_m = asset.parts.first().map_or(DVec3::ZERO, |part| part.centre_units * coat.metres_per_unit);
+    let subject = subject(asset, coat)?;
+    let origin_m = subject.origin_m;
     let points_m = stage::points_m(&scene);
     let renderer = recorder.step(
         "upload tiles",
         || Renderer::new(&gpu, &coat.tiles, options.samples),
         |renderer| renderer.as_ref().map_or(0, Renderer::tile_bytes),
     )?;
-    let mut pictures = Vec::with_capacity(framings.len());
-    for framing in framings {
-        let aspect = f64::from(options.size[0].max(1)) / f64::from(options.size[1].max(1));
-        let camera = framing.camera(&points_m, origin_m, aspect).checked()?;
-        let [near_m, far_m] = camera::depth_range_m(&camera, &points_m, origin_m);
-        let studio = options.lights.is_empty();
-        let (lights, ambient) = if charted {
+    let mut pictures = Vec::with_capacity(viewpoints.len());
+    for viewpoint in viewpoints {
+        let stage = &options.stage;
+        let camera = viewpoint.camera(&subject, stage.aspect())?;
+        let [near_m, far_m] = depth_range_m(&camera, &points_m, origin_m);
+        let lit = if charted && stage.lights.is_empty() && stage.environment.is_none() {
             let forward = DVec3::from(camera.target) - DVec3::from(camera.eye);
-            (vec![chart::light(forward.as_vec3().normalize_or(Vec3::NEG_Z))], chart::AMBIENT)
+            let light = chart::light(forward.as_vec3().normalize_or(Vec3::NEG_Z)).into();
+            let ambient = stage.ambient.unwrap_or(chart::AMBIENT);
+            Lit { lights: vec![light], ambient, fill_on_undercoat: false }
         } else {
-            (light::studio(&camera), light::STUDIO_AMBIENT)
+            stage.lit(&subject, &camera)?
         };
         let view = Frame {
-            clip_from_world: camera.clip_from_world(origin_m, aspect, near_m, far_m).as_mat4(),
+            clip_from_world: camera.clip_from_world(origin_m, stage.aspect(), near_m, far_m).as_mat4(),
             eye: (DVec3::from(camera.eye) - origin_m).as_vec3().extend(1.0),
-            size: options.size,
-            lights: if studio { lights } else { options.lights.clone() }.into_iter().map(Into::into).collect(),
-            ambient: options.ambient.unwrap_or(if studio { ambient } else { Vec3::ZERO }),
+            size: stage.size,
+            lights: lit.lights,
+            ambient: lit.ambient,
         };
         let drawn = draw(&renderer, &scene, &view, show, &mut recorder)?;
         pictures.push(drawn.picture);
@@ -256,13 +264,17 @@ fn draw(
 fn sheet(pictures: &[Picture], columns: u32) -> Picture {
     let [width, height] = pictures[0].size;
     let rows = (pictures.len() as u32).div_ceil(columns);
-    let mut pixels = vec![[0.0; 4]; (width * columns) as usize * (height * rows) as usize];
+    let [wide, high] = [width * columns, height * rows];
+    let mut pixels = vec![[0.0; 4]; wide as usize * high as usize];
+    let mut depth_m = vec![0.0; pixels.len()];
     for (i, picture) in (0..).zip(pictures) {
         let (left, top) = (i % columns * width, i / columns * height);
-        for (y, row) in (top..).zip(picture.pixels.chunks_exact(width as usize)) {
-            let start = (y * width * columns + left) as usize;
-            pixels[start..start + row.len()].copy_from_slice(row);
+        for y in 0..height {
+            let (from, to) = ((y * width) as usize, ((top + y) * wide + left) as usize);
+            let count = width as usize;
+            pixels[to..to + count].copy_from_slice(&picture.pixels[from..from + count]);
+            depth_m[to..to + count].copy_from_slice(&picture.depth_m[from..from + count]);
         }
     }
-    Picture { size: [width * columns, height * rows], pixels }
+    Picture { size: [wide, high], pixels, depth_m }
 }

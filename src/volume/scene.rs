@@ -1,13 +1,14 @@
 //! What a picture shows: skin with its hair, and how much hair lies over a point of it.
 
 use crate::data::fields::Fields;
-use crate::data::light::Light;
+use crate::data::light::{Directional, Light};
 use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;
 use crate::fur::groom::fibre::Fibre;
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, Vec3s};
 use crate::shade::lobes::LobeParameters;
+use crate::stage::light::Lit;
 
 /// Skin and hair of a picture.
 #[derive(Clone, Copy, Debug)]
@@ -61,6 +62,20 @@ pub struct Lighting {
     pub ambient: Vec3,
     /// Whether the further lights fall on undercoat too (Andersen et al. 2016 §5 leave them out).
     pub fill_on_undercoat: bool,
+}
+
+impl Lighting {
+    /// The first light is the key; without any it is dark.
+    pub fn new(lit: &Lit) -> Self {
+        let mut lights = lit.lights.iter().copied();
+        let dark = Directional { to_light: Vec3::Y, irradiance: Vec3::ZERO };
+        Self {
+            key: lights.next().unwrap_or(dark.into()),
+            fill: lights.collect(),
+            ambient: lit.ambient,
+            fill_on_undercoat: lit.fill_on_undercoat,
+        }
+    }
 }
 
 /// One kind of hair as a layer over flat skin: what shadows without a volume are made of.

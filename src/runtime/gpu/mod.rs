@@ -14,8 +14,8 @@ use crate::gpu::{Gpu, Timer};
 use crate::math::Vec2;
 use crate::runtime::draw_list::{DrawList, Frame, MAX_LIGHTS, Picture, Show};
 use layout::ViewUniform;
-use pipelines::{COLOUR, DEPTH, EDGE_SAMPLES, Pipelines, RESOLVED};
-use resources::{GpuFur, GpuSkin, GpuTile};
+use pipelines::{COLOUR, DEPTH, EDGE_SAMPLES, Pipelines, RESOLVED, RESOLVED_DEPTH};
+use resources::{GpuFur, GpuSkin, GpuTile, bind};
 
 /// What the picture holds before it is written, so that a pixel that never is shows.
 const POISON: wgpu::Color = wgpu::Color { r: f64::NAN, g: f64::NAN, b: f64::NAN, a: f64::NAN };
@@ -102,15 +102,13 @@ impl<'a> Renderer<'a> {
         let depth = gpu.target("depth", samples_size, EDGE_SAMPLES, DEPTH)?;
         let colour = gpu.target("samples", samples_size, 1, COLOUR)?;
         let resolved = gpu.target("picture", view.size, 1, RESOLVED)?;
-        let [edges_view, depth_view, colour_view, resolved_view] =
-            [&edges, &depth, &colour, &resolved].map(|t| t.create_view(&Default::default()));
+        let nearest = gpu.target("nearest", view.size, 1, RESOLVED_DEPTH)?;
+        let [edges_view, depth_view, colour_view, resolved_view, nearest_view] =
+            [&edges, &depth, &colour, &resolved, &nearest].map(|t| t.create_view(&Default::default()));
         let uniform = gpu.buffer("view", &[ViewUniform::new(view)], wgpu::BufferUsages::UNIFORM);
-        let group = |layout, resource| {
-            let entries = &[wgpu::BindGroupEntry { binding: 0, resource }];
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries })
-        };
-        let view_group = group(&layouts.view, uniform.as_entire_binding());
-        let samples_group = group(&layouts.samples, wgpu::BindingResource::TextureView(&colour_view));
+        let view_group = bind(gpu, &layouts.view, &[uniform.as_entire_binding()]);
+        let samples_group =
+            bind(gpu, &layouts.samples, &[&colour_view, &depth_view].map(wgpu::BindingResource::TextureView));
 
         let timer = Timer::new(gpu, 4);
         let mut encoder = gpu.encoder("frame");
@@ -150,14 +148,16 @@ impl<'a> Renderer<'a> {
             }
             passes.push(cost);
         }
-        self.resolve(&mut encoder, &resolved_view, &samples_group);
-        let pixels = gpu.read_rgba32(encoder, &resolved)?;
+        self.resolve(&mut encoder, [&resolved_view, &nearest_view], &samples_group);
+        let pixels: Vec<[f32; 4]> = gpu.read_texels(encoder, &resolved)?;
+        let depths: Vec<f32> = gpu.read_texels(gpu.encoder("depth"), &nearest)?;
         if let Some(times) = timer.read_ms(gpu)? {
             passes.iter_mut().zip(times).for_each(|(pass, ms)| pass.ms = Some(ms));
         }
         let samples = u64::from(samples_size[0]) * u64::from(samples_size[1]);
-        let target_bytes = samples * (u64::from(EDGE_SAMPLES) * (8 + 4) + 8) + pixels.len() as u64 * 16;
-        Ok(Drawn { picture: Picture { size: view.size, pixels }, passes, target_bytes })
+        let target_bytes = samples * (u64::from(EDGE_SAMPLES) * (8 + 4) + 8) + pixels.len() as u64 * 20;
+        let picture = Picture { size: view.size, pixels, depth_m: view.distances_m(&depths) };
+        Ok(Drawn { picture, passes, target_bytes })
     }
 
     fn draw_skins(&self, pass: &mut wgpu::RenderPass<'_>, skins: &[GpuSkin], visible: bool, cost: &mut PassCost) {
@@ -223,15 +223,17 @@ impl<'a> Renderer<'a> {
         furs.iter().map(|fur| fur.bytes).chain(self.tiles.iter().map(|tile| tile.bytes)).sum()
     }
 
-    fn resolve(&self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView, samples: &wgpu::BindGroup) {
+    fn resolve(&self, encoder: &mut wgpu::CommandEncoder, to: [&wgpu::TextureView; 2], samples: &wgpu::BindGroup) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("resolve"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(POISON), store: wgpu::StoreOp::Store },
-            })],
+            color_attachments: &to.map(|view| {
+                Some(wgpu::RenderPassColorAttachment {
+                    view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations { load: wgpu::LoadOp::Clear(POISON), store: wgpu::StoreOp::Store },
+                })
+            }),
             ..Default::default()
         });
         pass.set_pipeline(&self.pipelines.resolve);

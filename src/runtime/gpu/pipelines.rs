@@ -34,6 +34,8 @@ pub const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// The finished picture.
 pub const RESOLVED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+/// The finished picture's depths.
+pub const RESOLVED_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
 /// Layouts of what passes bind.
 pub struct Layouts {
@@ -47,7 +49,7 @@ pub struct Layouts {
     pub material: wgpu::BindGroupLayout,
     /// Group 3 of fins: their textures.
     pub fin: wgpu::BindGroupLayout,
-    /// Group 0 of the resolve: the samples.
+    /// Group 0 of the resolve: the samples and their depths.
     pub samples: wgpu::BindGroupLayout,
 }
 
@@ -62,6 +64,11 @@ impl Layouts {
             sample_type: TextureSampleType::Float { filterable },
             view_dimension,
             multisampled: false,
+        };
+        let depths = BindingType::Texture {
+            sample_type: TextureSampleType::Depth,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: true,
         };
         let array = texture(true, wgpu::TextureViewDimension::D2Array);
         let group = |label, kinds: &[BindingType]| {
@@ -83,7 +90,7 @@ impl Layouts {
             geometry: group("geometry", &[storage, storage]),
             material: group("material", &[sampler, array]),
             fin: group("fin", &[sampler, array, array]),
-            samples: group("samples", &[texture(false, wgpu::TextureViewDimension::D2)]),
+            samples: group("samples", &[texture(false, wgpu::TextureViewDimension::D2), depths]),
         }
     }
 }
@@ -112,7 +119,7 @@ struct Pass<'a> {
     groups: &'a [Option<&'a wgpu::BindGroupLayout>],
     vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     constants: &'a [(&'a str, f64)],
-    target: wgpu::ColorTargetState,
+    targets: &'a [Option<wgpu::ColorTargetState>],
     writes_depth: Option<bool>,
 }
 
@@ -125,10 +132,11 @@ impl Pipelines {
         let layouts = Layouts::new(gpu);
         let [skin, shell, fin, resolve] = [SKIN, SHELL, FIN, RESOLVE].map(|main| gpu.shader(main, &SHARED));
         let (skin, shell, fin, resolve) = (skin?, shell?, fin?, resolve?);
-        let target = |format, blend, write_mask| wgpu::ColorTargetState { format, blend, write_mask };
-        let opaque = target(COLOUR, None, wgpu::ColorWrites::ALL);
-        let hidden = target(COLOUR, None, wgpu::ColorWrites::empty());
-        let blended = target(COLOUR, Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), wgpu::ColorWrites::ALL);
+        let target = |format, blend, write_mask| Some(wgpu::ColorTargetState { format, blend, write_mask });
+        let opaque = [target(COLOUR, None, wgpu::ColorWrites::ALL)];
+        let hidden = [target(COLOUR, None, wgpu::ColorWrites::empty())];
+        let blended = [target(COLOUR, Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), wgpu::ColorWrites::ALL)];
+        let resolved = [RESOLVED, RESOLVED_DEPTH].map(|format| target(format, None, wgpu::ColorWrites::ALL));
         let (view, tile) = (Some(&layouts.view), Some(&layouts.tile));
         let skin_vertices = [Some(wgpu::VertexBufferLayout {
             array_stride: size_of::<SkinVertex>() as u64,
@@ -136,18 +144,17 @@ impl Pipelines {
             attributes: &SkinVertex::ATTRIBUTES,
         })];
         let skin_groups = [view, tile, Some(&layouts.material)];
-        let skin_pass = |target| Pass {
+        let skin_pass = |targets| Pass {
             shader: &skin,
             groups: &skin_groups,
             vertices: &skin_vertices,
             constants: &[],
-            target,
+            targets,
             writes_depth: Some(true),
         };
         let shell_groups = [view, tile, Some(&layouts.geometry)];
         let shells = |near: bool, with_fins: bool| {
             let constants = [("NEAR_SIDE", f64::from(near)), ("WITH_FINS", f64::from(with_fins))];
-            let target = blended.clone();
             pipeline(
                 gpu,
                 &Pass {
@@ -155,7 +162,7 @@ impl Pipelines {
                     groups: &shell_groups,
                     vertices: &[],
                     constants: &constants,
-                    target,
+                    targets: &blended,
                     writes_depth: Some(near),
                 },
             )
@@ -166,7 +173,7 @@ impl Pipelines {
             groups: &fin_groups,
             vertices: &[],
             constants: &[],
-            target: blended.clone(),
+            targets: &blended,
             writes_depth: Some(false),
         };
         let constants = [("SAMPLES", f64::from(samples))];
@@ -175,12 +182,12 @@ impl Pipelines {
             groups: &[Some(&layouts.samples)],
             vertices: &[],
             constants: &constants,
-            target: target(RESOLVED, None, wgpu::ColorWrites::ALL),
+            targets: &resolved,
             writes_depth: None,
         };
         Ok(Self {
-            skin: pipeline(gpu, &skin_pass(opaque)),
-            skin_depth: pipeline(gpu, &skin_pass(hidden)),
+            skin: pipeline(gpu, &skin_pass(&opaque)),
+            skin_depth: pipeline(gpu, &skin_pass(&hidden)),
             far_shells: [shells(false, false), shells(false, true)],
             near_shells: [shells(true, false), shells(true, true)],
             fins: pipeline(gpu, &fins),
@@ -222,7 +229,7 @@ fn pipeline(gpu: &Gpu, pass: &Pass<'_>) -> wgpu::RenderPipeline {
             module: pass.shader,
             entry_point: Some("fragment"),
             compilation_options,
-            targets: &[Some(pass.target.clone())],
+            targets: pass.targets,
         }),
         multiview_mask: None,
         cache: None,

@@ -14,7 +14,8 @@ fn bytes_of<T>(list: &[T]) -> u64 {
     size_of_val(list) as u64
 }
 
-fn bind(gpu: &Gpu, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
+/// Resources in the order of their bindings.
+pub fn bind(gpu: &Gpu, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
     let entries: Vec<_> = (0..)
         .zip(resources)
         .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })

@@ -1,6 +1,7 @@
 //! A camera that sees all of the asset.
 
 use crate::data::camera::Camera;
+use crate::data::subject::Subject;
 use crate::error::{Error, Result};
 use crate::math::{DVec2, DVec3, Vec3};
 use std::str::FromStr;
@@ -11,15 +12,17 @@ const VFOV_DEG: f64 = 28.0;
 const MARGIN: f64 = 0.06;
 
 /// Where to look from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Framing {
+#[derive(Clone, Debug, PartialEq)]
+pub enum Viewpoint {
     /// From an angle, as close as the whole asset fits.
     Orbit(Orbit),
     /// As a camera file says.
     Camera(Camera),
+    /// From the asset's own camera of this name.
+    Named(String),
 }
 
-impl Default for Framing {
+impl Default for Viewpoint {
     fn default() -> Self {
         Self::Orbit(Orbit::default())
     }
@@ -62,26 +65,39 @@ impl FromStr for Orbit {
     }
 }
 
-impl Framing {
-    /// The camera for a picture of `aspect` (width over height) of `points_m`, which lie around `origin_m`.
-    pub fn camera(&self, points_m: &[Vec3], origin_m: DVec3, aspect: f64) -> Camera {
+impl Viewpoint {
+    /// The camera for a picture of `aspect` (width over height).
+    ///
+    /// # Errors
+    /// [`crate::error::Kind::Usage`] for a camera that sees nothing or that the asset does not have; lists those it has.
+    pub fn camera(&self, subject: &Subject, aspect: f64) -> Result<Camera> {
         match self {
             Self::Camera(camera) => *camera,
-            Self::Orbit(orbit) => orbit.camera(points_m, origin_m, aspect),
+            Self::Orbit(orbit) => orbit.camera(subject, aspect),
+            Self::Named(name) => super::named(&subject.cameras, name, "camera", "--camera")?,
         }
+        .checked()
     }
 }
 
 impl Orbit {
-    fn camera(&self, points_m: &[Vec3], origin_m: DVec3, aspect: f64) -> Camera {
+    /// The camera that holds the subject's points in the rest pose, each with a ball of hair around it. It does not hang on
+    /// the hair as drawn, so that every renderer of an asset has the same.
+    pub fn camera(&self, subject: &Subject, aspect: f64) -> Camera {
         let (azimuth, elevation) = (self.azimuth_deg.to_radians(), self.elevation_deg.to_radians());
         let back = DVec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), azimuth.cos() * elevation.cos());
         let right = DVec3::Y.cross(back).normalize();
         let up = back.cross(right);
-        let seen: Vec<DVec3> =
-            points_m.iter().map(|p| p.as_dvec3()).map(|p| DVec3::new(p.dot(right), p.dot(up), p.dot(back))).collect();
+        let seen: Vec<DVec3> = subject
+            .points_m
+            .iter()
+            .map(|p| p.as_dvec3())
+            .map(|p| DVec3::new(p.dot(right), p.dot(up), p.dot(back)))
+            .collect();
         let slope_y = (0.5 * VFOV_DEG.to_radians()).tan() * (1.0 - MARGIN);
         let slopes = DVec2::new(slope_y * aspect, slope_y);
+        // A plane of the frustum leaves room for a ball of radius r where it clears its middle by r, measured at a right angle.
+        let room = (slopes * slopes + 1.0).map(f64::sqrt) * subject.hair_m;
         let (mut middle, mut distance) = (DVec3::ZERO, 1.0);
         if let Some(&first) = seen.first() {
             let (low, high) = seen.iter().fold((first, first), |(low, high), &p| (low.min(p), high.max(p)));
@@ -90,7 +106,7 @@ impl Orbit {
             for _ in 0..8 {
                 let needed = |p: &DVec3| {
                     let d = *p - middle;
-                    d.z + (d.x.abs() / slopes.x).max(d.y.abs() / slopes.y)
+                    d.z + ((d.truncate().abs() + room) / slopes).max_element()
                 };
                 distance = seen.iter().map(needed).fold(0.0, f64::max).max(1e-6);
                 let project = |p: &DVec3| (*p - middle).truncate() / (distance - (p.z - middle.z)).max(1e-9);
@@ -100,7 +116,7 @@ impl Orbit {
                 middle += (0.5 * (low + high) * distance).extend(0.0);
             }
         }
-        let target = origin_m + right * middle.x + up * middle.y + back * middle.z;
+        let target = subject.origin_m + right * middle.x + up * middle.y + back * middle.z;
         let eye = target + back * (distance * self.distance);
         Camera { eye: eye.into(), target: target.into(), up: [0.0, 1.0, 0.0], vfov_deg: VFOV_DEG }
     }
