@@ -13,7 +13,7 @@ use furrier::stage::background::Background;
 use furrier::stage::light::{Asked, parse};
 use furrier::stage::tone::{Development, Tone, develop};
 use predicates::prelude::*;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::f32::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
@@ -220,6 +220,23 @@ fn cameras_and_lights_of_the_asset_go_by_name() {
 }
 
 #[test]
+fn an_environment_lights_both_alike() {
+    let folder = Folder::new();
+    // 8 × 4 pixels, the upper row of radiance 4.
+    let mut map = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n".to_vec();
+    map.extend((0..32).flat_map(|i| if i < 8 { [128, 128, 128, 131] } else { [0; 4] }));
+    let path = folder.path("above.hdr");
+    std::fs::write(&path, map).unwrap();
+    let options = ["--env", path.to_str().unwrap(), "--orbit", "0,60,1", "--light", "dir:0,-1,0:0,0,0"];
+    let [render, view] = folder.both("env.exr", &options).map(|path| layers(&path)["G"].iter().sum::<f32>());
+    // What `view` has more is the highlight of bare skin.
+    assert!(render > 100.0 && (1.0..1.3).contains(&(view / render)), "{render} and {view}");
+    for (_, mut command) in folder.commands("no.png", &["--light", "dir:0,-1,0:1,1,1"].repeat(16)) {
+        command.args(["--env"]).arg(&path).assert().code(2).stderr(predicate::str::contains("at most 15"));
+    }
+}
+
+#[test]
 fn every_command_takes_the_same_flags() {
     let mut program = furrier::cli::definition();
     program.build();
@@ -282,20 +299,4 @@ fn tones_exposure_and_background() {
     assert_eq!(before[4..], [coded(0.6), coded(0.1), coded(0.1), 255]);
     assert_eq!("0.5,1,0".parse::<Background>().unwrap(), Background::Colour(Vec3::new(0.5, 1.0, 0.0)));
     assert!("0.5,2,0".parse::<Background>().is_err() && "wall".parse::<Background>().is_err());
-}
-
-#[test]
-fn a_report_draws_what_it_measures() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("report.json");
-    let mut command = Command::new(furrier_path());
-    command
-        .args(["report", "render", "sample:plane", "--size", "24x16", "--repeats", "1", "--transparent", "-o"])
-        .arg(&out);
-    command.args(["--set", "guard.density_per_cm2=10", "--set", "undercoat.density_per_cm2=100"]);
-    command.assert().success();
-    let report: Value = serde_json::from_slice(&std::fs::read(&out).unwrap()).unwrap();
-    assert_eq!(report["size"], json!([24, 16]));
-    let drawn = image::open(out.with_extension("png")).unwrap().to_rgba8();
-    assert!(drawn.dimensions() == (24, 16) && drawn.pixels().filter(|p| p.0[3] > 128).count() > 40);
 }

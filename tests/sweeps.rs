@@ -82,11 +82,11 @@ const SPARSE: [&str; 6] = [
 ];
 
 #[test]
-fn a_sweep_writes_its_three_files() {
+fn a_sweep_writes_its_four_files() {
     let folder = tempfile::tempdir().unwrap();
     let sweep = |name: &str| {
         let mut command = Command::new(furrier_path());
-        command.args(["report", "render", "sample:plane", "--size", "16x16", "--repeats", "1"]);
+        command.args(["report", "render", "sample:plane", "--size", "16x16", "--repeats", "1", "--transparent"]);
         command.args(SPARSE);
         command.arg("-o").arg(folder.path().join(name)).assert()
     };
@@ -101,23 +101,15 @@ fn a_sweep_writes_its_three_files() {
     assert!(points.len() > 40 && points.iter().any(|p| p["pareto"] == true));
     assert_eq!(read("out.csv").lines().count(), points.len() + 1);
     assert!(read("out.svg").starts_with("<svg"));
+    let drawn = image::open(folder.path().join("out.png")).unwrap().to_rgba8();
+    let covered = drawn.pixels().filter(|p| p.0[3] > 128).count();
+    assert!(drawn.dimensions() == (16, 16) && (20..240).contains(&covered), "{covered} pixels");
     sweep("out.txt").code(2);
     // Against a picture of one's own: of the view it is close to, of another size it is refused.
     let picture = |size: &str| {
         let path = folder.path().join(format!("{size}.exr"));
         let mut command = Command::new(furrier_path());
-        command.args([
-            "render",
-            "sample:plane",
-            "--preset",
-            "mink",
-            "--orbit",
-            "35,20,1",
-            "--size",
-            size,
-            "--quality",
-            "final",
-        ]);
+        command.args(["render", "sample:plane", "--preset", "mink", "--size", size, "--quality", "final"]);
         command.args(SPARSE);
         command.arg("-o").arg(&path).assert().success();
         path

@@ -28,11 +28,7 @@ pub struct StageArgs {
     /// A light, in metres and linear RGB, repeatable: the direction it travels and its irradiance; its place and its intensity;
     /// its place, direction, the angle from there to its cone's edge, and its intensity; or a light of the asset by name, whose
     /// lux is taken as irradiance and candela as intensity. The first is the key. Default: a small studio
-    #[arg(
-        long = "light",
-        value_name = "dir:X,Y,Z:R,G,B|point:X,Y,Z:R,G,B|spot:X,Y,Z:DX,DY,DZ:DEG:R,G,B|NAME",
-        allow_hyphen_values = true
-    )]
+    #[arg(long = "light", value_name = "dir:X,Y,Z:R,G,B|point:X,Y,Z:R,G,B|spot:X,Y,Z:DX,DY,DZ:DEG:R,G,B|NAME")]
     lights: Vec<String>,
     /// Light from everywhere, radiance in linear RGB [default: the studio's; none with --light or --env]
     #[arg(long, value_name = "R,G,B")]

@@ -23,8 +23,7 @@ Examples:
   furrier view furry.glb --screenshot fins.png --show skin,fins --light dir:0,-1,-1:3,3,3 --ambient 0.2,0.2,0.2
 
 A camera file is JSON: {\"eye\": [x, y, z], \"target\": [x, y, z], \"up\": [x, y, z], \"vfov_deg\": 40}, in metres; the last
-two may be left out. An .exr is linear and premultiplied, with the distance to the nearest surface that hides what is behind
-it (Z). Any graphics adapter will do, software ones too.")]
+two may be left out. An .exr is linear and premultiplied, with the distance to the nearest skin or near shell (Z). Any graphics adapter will do, software ones too.")]
 pub struct View {
     /// A file that furrier baked
     file: PathBuf,

@@ -139,8 +139,8 @@ pub struct Picture {
     pub size: [u32; 2],
     /// Radiance and coverage, rows from the top.
     pub pixels: Vec<[f32; 4]>,
-    /// Distance along the ray to the nearest surface that hides what is behind it (skin, near shells where they are dense),
-    /// m; 0 where there is none.
+    /// Distance along the ray to the nearest surface that writes depth (skin, near shells where they have hair), m; 0 where
+    /// there is none.
     pub depth_m: Vec<f32>,
 }
 

@@ -40,7 +40,8 @@ impl Asked {
         match self {
             Self::Light(light) => light.relative_to(subject.origin_m),
             Self::Named(name) => {
-                named(&subject.lights, name, "light", "--light").and_then(|light| light.relative_to(subject.origin_m))
+                let hint = |error: Error| error.with_hint("lights that are no names begin with dir:, point: or spot:");
+                named(&subject.lights, name, "light", "--light").map_err(hint)?.relative_to(subject.origin_m)
             }
         }
         .map_err(|error| error.with_field("--light"))
