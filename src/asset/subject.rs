@@ -5,7 +5,7 @@ use super::json::At;
 use crate::data::camera::Camera;
 use crate::data::light::{Directional, InWorld, Point, Spot};
 use crate::data::subject::{Named, Subject};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::math::{DMat4, DVec3, Vec3};
 
 /// The glTF extension that holds lights.
@@ -65,10 +65,9 @@ fn names(node: &At<'_>, own: &Result<At<'_>>, kind: &str, index: &At<'_>) -> Vec
 fn camera(at: &At<'_>, placed: &DMat4, origin_m: DVec3) -> Result<Camera> {
     let kind = at.need("type")?;
     if kind.text()? != "perspective" {
-        return Err(kind
-            .fault("perspective")
+        return Err(Error::usage(format!("a camera of this kind takes no picture here: {}", kind.text()?))
             .with_field("--camera")
-            .with_hint("an orthographic camera takes no picture here"));
+            .with_expected("a perspective camera"));
     }
     let yfov = at.need("perspective")?.need("yfov")?;
     let eye = placed.w_axis.truncate();

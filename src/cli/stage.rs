@@ -11,42 +11,44 @@ use crate::stage::tone::{Development, Tone};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 
+/// What these flags stand under in the help.
+const HEADING: &str = "Camera and light";
+
 /// What a picture is taken with; the same for all commands.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Camera and light")]
 pub struct StageArgs {
     /// Pixels
-    #[arg(long, value_name = "WxH", default_value = "1024x1024")]
+    #[arg(long, help_heading = HEADING, value_name = "WxH", default_value = "1024x1024")]
     size: String,
     /// Degrees around and above, and a factor on the distance at which the asset just fits in its rest pose
     /// [default: 35,12,1]
-    #[arg(long, value_name = "AZ,EL,DIST", allow_hyphen_values = true, conflicts_with = "camera")]
+    #[arg(long, help_heading = HEADING, value_name = "AZ,EL,DIST", allow_hyphen_values = true, conflicts_with = "camera")]
     orbit: Option<String>,
     /// A camera file, or a camera of the asset by its node's name or its own; a nameless one is camera_0, camera_1, …
-    #[arg(long, value_name = "FILE.json|NAME")]
+    #[arg(long, help_heading = HEADING, value_name = "FILE.json|NAME")]
     camera: Option<String>,
     /// A light, in metres and linear RGB, repeatable: the direction it travels and its irradiance; its place and its intensity;
     /// its place, direction, the angle from there to its cone's edge, and its intensity; or a light of the asset by name, whose
     /// lux is taken as irradiance and candela as intensity. The first is the key. Default: a small studio
-    #[arg(long = "light", value_name = "dir:X,Y,Z:R,G,B|point:X,Y,Z:R,G,B|spot:X,Y,Z:DX,DY,DZ:DEG:R,G,B|NAME")]
+    #[arg(long = "light", help_heading = HEADING, value_name = "dir:X,Y,Z:R,G,B|point:X,Y,Z:R,G,B|spot:X,Y,Z:DX,DY,DZ:DEG:R,G,B|NAME")]
     lights: Vec<String>,
     /// Light from everywhere, radiance in linear RGB [default: the studio's; none with --light or --env]
-    #[arg(long, value_name = "R,G,B")]
+    #[arg(long, help_heading = HEADING, value_name = "R,G,B")]
     ambient: Option<String>,
     /// A map of surrounding light: directional lights stand for it, 16 in all with those of --light
-    #[arg(long, value_name = "FILE.hdr|exr")]
+    #[arg(long, help_heading = HEADING, value_name = "FILE.hdr|exr")]
     env: Option<PathBuf>,
     /// Stops of exposure, for a picture of eight bits
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_hyphen_values = true)]
+    #[arg(long, help_heading = HEADING, value_name = "EV", default_value_t = 0.0, allow_hyphen_values = true)]
     exposure: f32,
     /// What becomes of light too bright for a picture of eight bits: rolled off (Khronos PBR Neutral), or cut off
-    #[arg(long, value_enum, default_value = "neutral")]
+    #[arg(long, help_heading = HEADING, value_enum, default_value = "neutral")]
     tone: ToneName,
     /// What is behind the asset in a picture of eight bits: a grey wall, or one colour in linear RGB
-    #[arg(long, value_name = "backdrop|R,G,B", default_value = "backdrop", conflicts_with = "transparent")]
+    #[arg(long, help_heading = HEADING, value_name = "backdrop|R,G,B", default_value = "backdrop", conflicts_with = "transparent")]
     background: String,
     /// Leave out what is behind the asset: the picture keeps its alpha, as an .exr does in any case
-    #[arg(long)]
+    #[arg(long, help_heading = HEADING)]
     transparent: bool,
 }
 
