@@ -1,4 +1,5 @@
-//! The floors: a file imports only from a lower floor or from its own folder, never from a sibling on its own floor.
+//! The floors: a file imports only from a lower floor or from its own folder, never from a sibling on its own floor. And the
+//! sizes: no file is long, and most are short.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -188,16 +189,47 @@ fn string_end(text: &str) -> usize {
     text.len()
 }
 
+/// Lines that a file may have.
+const MOST_LINES: usize = 400;
+
+/// Lines that the median file of `src` may have.
+const MEDIAN_LINES: usize = 120;
+
+/// The files that have more than [`MOST_LINES`] lines, one line each, sorted.
+pub fn too_long(files: &[(String, String)]) -> Vec<String> {
+    let mut found: Vec<String> = files
+        .iter()
+        .map(|(path, text)| (path, text.lines().count()))
+        .filter(|&(_, lines)| lines > MOST_LINES)
+        .map(|(path, lines)| format!("{path}: {lines} lines, {MOST_LINES} at most"))
+        .collect();
+    found.sort();
+    found
+}
+
+/// Lines of the median file, the longer one of the middle two.
+pub fn median_lines(files: &[(String, String)]) -> usize {
+    let mut lines: Vec<usize> = files.iter().map(|(_, text)| text.lines().count()).collect();
+    lines.sort_unstable();
+    lines[lines.len() / 2]
+}
+
 /// Every Rust file below `folder`, with its path relative to it.
 pub fn sources(folder: &Path) -> Vec<(String, String)> {
+    written(folder, &["rs"])
+}
+
+/// Every file below `folder` whose name has one of these `endings`, with its path relative to it. What npm installs is
+/// left out.
+fn written(folder: &Path, endings: &[&str]) -> Vec<(String, String)> {
     let mut found = Vec::new();
     let mut open = vec![folder.to_owned()];
     while let Some(dir) = open.pop() {
         for entry in std::fs::read_dir(&dir).unwrap() {
             let path = entry.unwrap().path();
             if path.is_dir() {
-                open.push(path);
-            } else if path.extension().is_some_and(|e| e == "rs") {
+                open.extend(Some(path).filter(|path| !path.ends_with("node_modules")));
+            } else if path.extension().is_some_and(|e| endings.iter().any(|ending| e == *ending)) {
                 let name = path.strip_prefix(folder).unwrap().to_str().unwrap().replace('\\', "/");
                 found.push((name, std::fs::read_to_string(&path).unwrap()));
             }
@@ -223,6 +255,23 @@ fn every_folder_of_the_architecture_page_has_its_floor() {
         });
         assert!(row.ends_with(&format!("| {floor} |")), "docs/architecture.md gives another floor than {floor}: {row}");
     }
+}
+
+#[test]
+fn no_file_is_long_and_the_median_of_the_source_is_short() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let files: Vec<(String, String)> = ["src", "shaders", "tests", "benches", "examples"]
+        .iter()
+        .flat_map(|folder| {
+            let files = written(&root.join(folder), &["rs", "wgsl", "mjs"]);
+            assert!(!files.is_empty(), "no file found in {folder}/");
+            files.into_iter().map(move |(path, text)| (format!("{folder}/{path}"), text))
+        })
+        .collect();
+    let long = too_long(&files);
+    assert!(long.is_empty(), "{}", long.join("\n"));
+    let median = median_lines(&sources(&root.join("src")));
+    assert!(median <= MEDIAN_LINES, "the median file of src/ has {median} lines, {MEDIAN_LINES} at most");
 }
 
 #[test]

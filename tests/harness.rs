@@ -1,6 +1,6 @@
 //! Tests of the tests: every comparison must catch a planted fault.
 
-use crate::architecture::breaches;
+use crate::architecture::{breaches, median_lines, too_long};
 use crate::circles::circles;
 use crate::docs::first_difference;
 use crate::hybrid_twins::share_alike;
@@ -57,6 +57,14 @@ fn circles_inside_folders_are_seen() {
     let [door, _, b, c] = open;
     assert_eq!(files([door, ("fur/a.rs", "use super::b;"), b, c]), ["fur/: a -> b -> a"]);
     assert_eq!(files([door, ("fur/a.rs", "use super::c::{d, e};"), b, c]), ["fur/: a -> c -> b -> a"]);
+}
+
+#[test]
+fn a_long_file_and_a_long_median_are_seen() {
+    let files = [401, 7, 400, 12].map(|lines| (format!("src/{lines}.rs"), "x\n".repeat(lines)));
+    assert_eq!(too_long(&files), ["src/401.rs: 401 lines, 400 at most"]);
+    assert_eq!(median_lines(&files), 400);
+    assert_eq!(median_lines(&files[1..]), 12);
 }
 
 #[test]
