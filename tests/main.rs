@@ -56,3 +56,4 @@ mod twins;
 mod undercoat;
 mod validator;
 mod viewer;
+mod xatlas;
