@@ -19,7 +19,7 @@ use furrier::data::mesh::Mesh;
 use furrier::data::patches::Patches;
 use furrier::fur::field::{DirectionField, FieldSource, directions};
 use furrier::fur::groom::fibre::Fibre;
-use furrier::fur::patch::{Parameterisation, parameterise, uv_usable};
+use furrier::fur::patch::{Parameterisation, parameterise};
 use furrier::math::Vec3;
 use furrier::preset::Preset;
 use std::time::Instant;
@@ -85,8 +85,9 @@ fn meshes(part: &str) {
         if mesh.triangles.len() < 20_000 {
             methods.push(("atlas", Parameterisation::Atlas { texels_per_tile: 128, padding_texels: 4 }));
         }
-        if uv_usable(&mesh, 0) {
-            methods.push(("uv", Parameterisation::Uv { set: 0 }));
+        let own = Parameterisation::Uv { set: 0 };
+        if parameterise(&mesh, &comb, tile.edge_m, own).is_ok() {
+            methods.push(("uv", own));
         }
         for (method, of) in methods {
             let start = Instant::now();

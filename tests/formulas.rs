@@ -1,12 +1,12 @@
 //! The shaders' formulas against the same ones in Rust, over random inputs.
 
+use crate::lanes::simplex;
 use crate::scenes::{self, Grown};
 use furrier::gpu::{Binding, Choice, Gpu, Library, Source};
 use furrier::hybrid::Settings;
 use furrier::hybrid::gpu::kernels::SHARED;
 use furrier::hybrid::gpu::layout::SceneUniform;
 use furrier::math::hash::{Stream, combine, unit_f32};
-use furrier::math::noise::simplex;
 use furrier::math::{Vec2, Vec3, Vec4};
 use furrier::shade::Angles;
 use furrier::shade::kajiya_kay::KajiyaKay;
@@ -129,7 +129,7 @@ fn shaders_and_rust_agree_on_every_formula() {
         let (a, b, out) = (inputs[2 * i], inputs[2 * i + 1], &outputs[8 * i..8 * i + 8]);
         let (hair, light) = (on_sphere(Vec2::new(a.x, a.y)), on_sphere(Vec2::new(a.z, a.w)));
         let eye = on_sphere(Vec2::new(b.x, b.y));
-        let angles = Angles::of_vectors(hair, light, eye);
+        let angles = Angles::new(hair.dot(light), hair.dot(eye), light.dot(eye));
         let scattered = lobes.scatter(angles);
         // Where hair, light and eye are nearly in line, the azimuth is a quotient of roundings.
         if angles.sin_in.abs().max(angles.sin_out.abs()) < 0.999 {

@@ -13,7 +13,7 @@ pub fn picture() -> Light {
     for i in 0..width * height {
         let (x, y) = ((i % width) as f32 / width as f32 - 0.5, (i / width) as f32 / height as f32 - 0.5);
         let alpha = if x * x + y * y < 0.2 { 1.0 } else { 0.0 };
-        let stripes = 0.4 + 0.2 * (40.0 * x).sin() + 0.1 * stream.signed();
+        let stripes = 0.4 + 0.2 * (40.0 * x).sin() + 0.1 * (2.0 * stream.unit() - 1.0);
         light.alpha.push(alpha);
         light.colour.push(Vec3::new(stripes, 0.7 * stripes, 0.4 + y * 0.3) * alpha);
     }

@@ -5,7 +5,7 @@ use crate::meshes;
 use furrier::data::mesh::Mesh;
 use furrier::data::patches::Patches;
 use furrier::fur::field::{FieldSource, directions};
-use furrier::fur::patch::{Parameterisation, parameterise, uv_usable};
+use furrier::fur::patch::{Parameterisation, parameterise};
 use furrier::math::{Vec2, Vec3};
 
 const ATLAS: Parameterisation = Parameterisation::Atlas { texels_per_tile: 128, padding_texels: 4 };
@@ -60,12 +60,11 @@ fn own_coordinates_are_turned_to_the_comb_and_scaled_to_the_tile() {
 #[test]
 fn unusable_coordinates_are_refused_by_name() {
     let mut mesh = meshes::plane(4, 1.0);
-    assert!(uv_usable(&mesh, 0) && !uv_usable(&mesh, 1));
     let comb = meshes::tangent(&mesh, |_| Vec3::X);
+    assert!(parameterise(&mesh, &comb, 0.1, UV).is_ok());
     let error = parameterise(&mesh, &comb, 0.1, Parameterisation::Uv { set: 1 }).expect_err("no such set");
     assert_eq!(error.field.as_deref(), Some("TEXCOORD_1"));
     mesh.uv_sets[0].fill(Vec2::ZERO);
-    assert!(!uv_usable(&mesh, 0));
     let error = parameterise(&mesh, &comb, 0.1, UV).expect_err("all zero");
     assert_eq!(error.field.as_deref(), Some("TEXCOORD_0"));
     assert!(parameterise(&mesh, &comb, f32::NAN, ATLAS).is_err());
@@ -154,8 +153,9 @@ fn every_shared_mesh_is_covered_by_its_atlas_and_its_own_coordinates() {
         if mesh.triangles.len() < 3_000 {
             methods.push(ATLAS); // xatlas needs seconds for larger ones.
         }
-        if uv_usable(&mesh, 0) {
-            methods.push(UV);
+        match parameterise(&mesh, &comb, 0.05, UV) {
+            Ok(_) => methods.push(UV),
+            Err(error) => assert_eq!(error.field.as_deref(), Some("TEXCOORD_0"), "{} {material}", path.display()),
         }
         for method in methods {
             let patches = parameterise(&mesh, &comb, 0.05, method)

@@ -29,9 +29,9 @@ fn knot(x: f32, y: f32, half_px: f32) -> Knot {
 fn coverage_sums_to_the_ribbons_area() {
     let mut random = Stream::new(1);
     for _ in 0..2000 {
-        let mut coordinate = || 20.0 * random.signed();
+        let mut coordinate = || 20.0 * (2.0 * random.unit() - 1.0);
         let (a, b) = ((coordinate(), coordinate()), (coordinate(), coordinate()));
-        let half_px = libm::expf(4.0 * random.signed() - 4.0);
+        let half_px = libm::expf(4.0 * (2.0 * random.unit() - 1.0) - 4.0);
         let length = f64::from((a.0 - b.0).hypot(a.1 - b.1));
         let area = 2.0 * f64::from(half_px) * length;
         let sum = covered(&knot(a.0, a.1, half_px), &knot(b.0, b.1, half_px));

@@ -5,9 +5,11 @@ use crate::meshes;
 use furrier::coat::hair::TileHair;
 use furrier::coat::seams::look;
 use furrier::coat::tile::TileRecipe;
+use furrier::data::mesh::Mesh;
+use furrier::data::patches::{Patches, Seams};
 use furrier::fur::field::{FieldSource, directions};
 use furrier::fur::groom::fibre::Fibre;
-use furrier::fur::patch::{Parameterisation, Place, measure, measure_seams, parameterise};
+use furrier::fur::patch::{Parameterisation, Place, WINDOWS, compare_seams, measure, parameterise};
 use furrier::math::{Vec2, Vec3};
 
 const LAPPED: Parameterisation = Parameterisation::Lapped { seed: 1 };
@@ -97,6 +99,10 @@ fn tile() -> impl Fn(Vec2) -> [f32; 3] {
     }
 }
 
+fn measure_seams(mesh: &Mesh, patches: &Patches, look: impl Fn(&Place) -> Vec<[f32; 3]> + Sync) -> Seams {
+    compare_seams(mesh, [patches], 0.02, 128, WINDOWS, |_, place| look(place))[0]
+}
+
 #[test]
 fn seams_show_no_more_than_chance_and_planted_ones_are_seen() {
     let mesh = meshes::sphere(24, 0.1);
@@ -104,7 +110,7 @@ fn seams_show_no_more_than_chance_and_planted_ones_are_seen() {
     let patches = parameterise(&mesh, &comb, 0.02, LAPPED).expect("patches");
     let tile = tile();
     let seen = |place: &Place| place.uv.iter().map(|&uv| tile(uv)).collect::<Vec<_>>();
-    let plain = measure_seams(&mesh, &patches, 0.02, 128, seen);
+    let plain = measure_seams(&mesh, &patches, seen);
     assert!(plain.edges > 50 && plain.difference < 1.1 && plain.variance > 0.9, "{plain:?}");
 
     let topology = furrier::data::topology::Topology::new(&mesh.triangles, |v| mesh.position_class[v as usize]);
@@ -123,10 +129,10 @@ fn seams_show_no_more_than_chance_and_planted_ones_are_seen() {
         let more = if at_seam(place) { 0.3 * (place.uv[0].x * 7.0).sin() } else { 0.0 };
         seen(place).into_iter().map(|s| s.map(|x| x + more)).collect::<Vec<_>>()
     };
-    let shown = measure_seams(&mesh, &patches, 0.02, 128, bright);
+    let shown = measure_seams(&mesh, &patches, bright);
     assert!(shown.difference > 1.5, "{shown:?}");
     // Blurred along seams: no difference, but no hair either.
     let blur = |place: &Place| if at_seam(place) { vec![[0.5; 3]; place.uv.len()] } else { seen(place) };
-    let blurred = measure_seams(&mesh, &patches, 0.02, 128, blur);
+    let blurred = measure_seams(&mesh, &patches, blur);
     assert!(blurred.difference < 1.1 && blurred.variance < 0.9, "{blurred:?}");
 }

@@ -14,6 +14,7 @@ use furrier::reference::point::ShellPoint;
 use furrier::reference::skin::Skin;
 use furrier::volume::mean::MeanShadow;
 use furrier::volume::scene::{Layer, Scene};
+use furrier::volume::shell::block::code;
 use furrier::volume::shell::lattice::{self, Lattice, Lattices};
 
 /// What a lattice holds at a place, in the first lane.
@@ -40,10 +41,9 @@ fn stored_shadows_are_linear_between_corners_and_levels() {
     let layers = 4;
     let depth = |b: Vec3, t: f32| 1.0 + 2.0 * b.y + 0.5 * b.z + 1.5 * t;
     for d in 0..4 {
-        let level = |i: u32| lattice::places(d).map(move |b| depth(b, i as f32 / layers as f32));
+        let column = |b: Vec3| (0..=layers).map(move |i| code(depth(b, i as f32 / layers as f32)));
         assert_eq!(lattice::places(d).count(), lattice::corners(d) as usize);
-        let values: Vec<f32> = (0..=layers).flat_map(level).collect();
-        let stored = Lattice::new(d, &values);
+        let stored = Lattice::of_codes(d, lattice::places(d).flat_map(column).collect());
         for (b, t) in [
             (Vec3::new(1.0, 0.0, 0.0), 0.0),
             (Vec3::new(0.0, 1.0, 0.0), 1.0),

@@ -9,10 +9,11 @@ use furrier::data::strands::Profile;
 use furrier::fur::groom::Shape;
 use furrier::fur::groom::fibre::Fibre;
 use furrier::math::hash::Stream;
+use furrier::math::lanes::{F32s, Scalar, Vec3s};
 use furrier::math::{DVec2, DVec3, Mat3, Vec3};
 use furrier::volume::march::content::{Content, Resolution};
 use furrier::volume::march::volume::Volume;
-use furrier::volume::march::{Start, Stepping};
+use furrier::volume::march::{Journey, Start, Stepping};
 use furrier::volume::medium::Medium;
 use furrier::volume::scene::{HairScattering, Scene};
 use furrier::volume::shell::prism::Place;
@@ -161,8 +162,9 @@ fn depth_of_scene(scene: &Scene<'_>, direction: DVec3) -> f64 {
     let place = Place { b: [0.3, 0.3], t: 1.0 };
     let origin_m = volume.shell().prism(triangle).jacobian(&place).at_m;
     let start = Start { at_m: 0.0, triangle, place };
-    let depth = volume.depth_along(origin_m, direction.as_vec3(), start, &Stepping::default(), f32::INFINITY);
-    f64::from(depth)
+    let journey = Journey { origin_m, direction: direction.as_vec3(), start, far_m: f32::INFINITY };
+    let (depths, _) = volume.depths_along(&[journey], &Stepping::default(), 0.0, f32::INFINITY);
+    f64::from(depths[0])
 }
 
 pub fn directions() -> Vec<DVec3> {
@@ -211,23 +213,24 @@ fn leaning_undercoat_hides_what_its_hairs_hide() {
 fn every_place_has_a_subelement_and_every_centre_its_own() {
     let mut random = Stream::new(2);
     for d in 0..=7 {
+        let n = (1 << d) as f32;
+        let index = |b: Vec3| subelement::indices(Vec3s::<Scalar>::splat(b), F32s::splat(n)).row()[0];
         let mut seen = vec![false; 1 << (2 * d)];
         for i in 0..1_u32 << (2 * d) {
             let centre = subelement::centre(i, d);
             assert!((centre.element_sum() - 1.0).abs() < 1e-5 && centre.min_element() > 0.0, "{centre} of {i} at {d}");
-            let index = subelement::index(centre, d);
+            let index = index(centre);
             assert_eq!(index, i, "centre {centre} at d = {d}");
             seen[index as usize] = true;
         }
         assert!(seen.into_iter().all(|s| s));
         for k in 0..4000 {
-            let n = (1 << d) as f32;
             // Half of the points lie on lattice lines, some outside.
             let (mut x, mut y) = (1.2 * random.unit() - 0.1, 1.2 * random.unit() - 0.1);
             if k % 2 == 0 {
                 (x, y) = ((x * n).round() / n, (y * n).round() / n);
             }
-            assert!(subelement::index(Vec3::new(x, y, 1.0 - x - y), d) < 1 << (2 * d));
+            assert!(index(Vec3::new(x, y, 1.0 - x - y)) < 1 << (2 * d));
         }
     }
 }

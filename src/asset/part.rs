@@ -20,9 +20,7 @@ pub struct Part {
     pub nodes: Vec<usize>,
     /// Skin of the first node.
     pub skin: Option<usize>,
-    /// glTF material.
-    pub material: Option<usize>,
-    /// Its name; `material_3` for nameless ones, `default` where there is none.
+    /// Name of its material; `material_3` for nameless ones, `default` where there is none.
     pub material_name: String,
     /// What hair takes its colour from by default.
     pub base_colour: BaseColour,
@@ -199,7 +197,6 @@ pub fn collect(document: &Document, scene: &SceneGraph, notes: &mut Notes) -> Re
                     primitive,
                     nodes: nodes_of.clone(),
                     skin,
-                    material,
                     material_name: material_name(document, material)?,
                     base_colour: material.map_or(Ok(BaseColour::default()), |m| BaseColour::of(document, m, notes))?,
                     stored,

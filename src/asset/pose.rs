@@ -103,19 +103,6 @@ impl Asset {
         }
         Ok(Pose { world: self.scene.world(&local), weights })
     }
-
-    /// Last key of animation `index`, s.
-    ///
-    /// # Errors
-    /// When there is no such animation, or its keys cannot be read.
-    pub fn duration_s(&self, index: usize) -> Result<f64> {
-        let mut end = 0.0_f64;
-        for sampler in self.document.root().entry("animations", index)?.list("samplers")? {
-            let times = self.document.floats(sampler.need("input")?.size()?, 1)?;
-            end = times.iter().filter(|t| t.is_finite()).fold(end, |end, &t| end.max(f64::from(t)));
-        }
-        Ok(end)
-    }
 }
 
 impl Part {

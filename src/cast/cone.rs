@@ -58,14 +58,6 @@ impl Cone {
         let s = if dt.abs() > 1e-12 { ((depth_m - t0) / dt).clamp(low, high) } else { 0.5 * (low + high) };
         Some(Hit { depth_m, leave_m: leave, s })
     }
-
-    /// Lowest and highest corner.
-    pub fn bounds_m(&self) -> (Vec3, Vec3) {
-        (
-            (self.from_m - self.from_radius_m).min(self.to_m - self.to_radius_m),
-            (self.from_m + self.from_radius_m).max(self.to_m + self.to_radius_m),
-        )
-    }
 }
 
 /// Where in [0, 1] the parabola a s² + 2 b s + c is negative: the interval that holds it.

@@ -47,11 +47,6 @@ impl Stream {
         unit_f32(self.bits())
     }
 
-    /// Uniform in [-1, 1).
-    pub fn signed(&mut self) -> f32 {
-        2.0 * self.unit() - 1.0
-    }
-
     /// Standard normal (Box and Muller 1958), cut at 5.8 standard deviations by the 24-bit uniform.
     pub fn normal(&mut self) -> f32 {
         let radius = libm::sqrtf(-2.0 * libm::logf(1.0 - self.unit()));

@@ -28,11 +28,6 @@ impl Ray {
     pub fn see(&self, v: DVec3) -> DVec3 {
         DVec3::new(v.dot(self.across[0]), v.dot(self.across[1]), v.dot(self.direction))
     }
-
-    /// The point `at_m` along it.
-    pub fn at(&self, at_m: f64) -> DVec3 {
-        self.origin_m + self.direction * at_m
-    }
 }
 
 /// A box.

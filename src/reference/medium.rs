@@ -106,11 +106,6 @@ impl<'a> Medium<'a> {
         v[0] * place.b.x + v[1] * place.b.y + v[2] * place.b.z
     }
 
-    /// Unit normal of the skin under a place.
-    pub fn normal(&self, place: &ShellPoint) -> DVec3 {
-        self.vector(self.normals, place).normalize_or(DVec3::Y)
-    }
-
     /// Mean direction of hair at a place, unit.
     pub fn hair(&self, place: &ShellPoint) -> DVec3 {
         self.slabs.up_m(place).normalize_or(DVec3::Y)

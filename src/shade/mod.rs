@@ -10,8 +10,8 @@ mod real;
 
 pub use real::Real;
 
+use crate::math::DVec3;
 use crate::math::lanes::{F32s, Isa, Vec3s};
-use crate::math::{DVec3, Vec3};
 
 /// Where light comes from and goes to, relative to a hair. Both directions point away from the hair.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,13 +46,6 @@ impl<R: Real> Angles<R> {
     #[inline(always)]
     pub fn cos_out(self) -> R {
         (R::of(1.0) - self.sin_out * self.sin_out).max(R::of(0.0)).sqrt()
-    }
-}
-
-impl Angles<f32> {
-    /// From unit vectors: the hair's direction, towards the light, towards the eye.
-    pub fn of_vectors(hair: Vec3, to_light: Vec3, to_eye: Vec3) -> Self {
-        Self::new(hair.dot(to_light), hair.dot(to_eye), to_light.dot(to_eye))
     }
 }
 

@@ -32,8 +32,6 @@ impl Placed {
 /// earlier one has it.
 #[derive(Clone, Debug)]
 pub struct Region {
-    /// First texel of the square, which may lie outside it.
-    pub first: [i64; 2],
     /// Texels along x and y.
     pub size: [usize; 2],
     /// The chart's own triangles, then those around it.
@@ -58,7 +56,7 @@ impl Region {
     ) -> Self {
         let first = [0, 1].map(|i| i64::from(rectangle[i]) - i64::from(margin));
         let size = [2, 3].map(|i| (rectangle[i] + 2 * margin) as usize);
-        let mut region = Self { first, size, placed: Vec::new(), own: 0, cells: vec![Vec::new(); size[0] * size[1]] };
+        let mut region = Self { size, placed: Vec::new(), own: 0, cells: vec![Vec::new(); size[0] * size[1]] };
         let origin = Vec2::new(first[0] as f32, first[1] as f32);
         let corners = |t: usize| patches.triangles[t].map(|v| patches.uv[v as usize] * texels as f32 - origin);
         for &triangle in own {

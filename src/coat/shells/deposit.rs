@@ -73,12 +73,6 @@ impl Voxels {
         self.colour.iter_mut().zip(&other.colour).for_each(|(a, b)| *a += *b);
     }
 
-    /// The part of an array that belongs to one slab.
-    pub fn slab<'a, T>(&self, values: &'a [T], slab: usize) -> &'a [T] {
-        let n = self.layout.texels();
-        &values[slab * n..(slab + 1) * n]
-    }
-
     /// Strands deposited into empty voxels, a fixed number of batches side by side, so that the sums come
     /// out the same for any number of threads. See [`Self::deposit`].
     pub fn deposited(layout: Layout, strands: &Strands, slopes: &[Vec2]) -> Self {

@@ -20,8 +20,7 @@ use crate::math::Vec3;
 
 pub use atlas::{fit as fit_atlas, xatlas_alone};
 pub use measure::{of as measure, seam_edges, singular_values};
-pub use seams::{PIXEL, Place, WINDOWS, compare_seams, measure_seams};
-pub use uv::usable as uv_usable;
+pub use seams::{PIXEL, Place, WINDOWS, compare_seams};
 
 /// Where the texture coordinates come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +51,7 @@ pub enum Parameterisation {
 ///
 /// # Errors
 /// Names the argument that does not fit: an edge that is not positive and finite, directions that are not one per
-/// vertex, a UV set that the mesh lacks or whose coordinates cannot carry a texture (see [`uv_usable`]).
+/// vertex, a UV set that the mesh lacks or whose coordinates cannot carry a texture (less than 90 % of the area is mapped soundly).
 pub fn parameterise(mesh: &Mesh, direction: &[Vec3], tile_edge_m: f32, method: Parameterisation) -> Result<Patches> {
     if !(tile_edge_m.is_finite() && tile_edge_m > 0.0) {
         return Err(Error::usage("the tile has no size")

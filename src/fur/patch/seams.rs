@@ -28,8 +28,6 @@ pub const WINDOWS: usize = 2000;
 pub struct Place {
     /// Skin vertices of the edge, and how far along it the window's middle is, 0 … 1.
     pub edge: ([u32; 2], f32),
-    /// Coat vertices of the edge on this side, in the order of `edge`.
-    pub ends: [u32; 2],
     /// How the skin runs as u and as v grow, as it lies around `normal`, over the tile's edge: unit vectors at right angles
     /// where nothing is stretched.
     pub axes: [Vec3; 2],
@@ -41,21 +39,11 @@ pub struct Place {
     pub uv: Vec<Vec2>,
 }
 
-/// Measures the seams of `patches` on `mesh` for tiles of `tile_edge_m` with `texels` along an edge.
+/// Measures the seams of several `sets` of patches on `mesh` that differ in their coordinates only, each against fake borders
+/// of its own, for tiles of `tile_edge_m` with `texels` along an edge.
 ///
-/// `look` gives what is seen at each coordinate of a place, in three views (say luminance at 0, 45 and 75° to the normal).
-pub fn measure_seams(
-    mesh: &Mesh,
-    patches: &Patches,
-    tile_edge_m: f32,
-    texels: u32,
-    look: impl Fn(&Place) -> Vec<[f32; 3]> + Sync,
-) -> Seams {
-    compare_seams(mesh, [patches], tile_edge_m, texels, WINDOWS, |_, place| look(place))[0]
-}
-
-/// [`measure_seams`] of several sets of patches that differ in their coordinates only, each against fake borders of its own.
-/// `look` is told which set it looks at. So many `windows` lie along seams, and as many along fake borders.
+/// `look` gives what is seen at each coordinate of a place in one of the sets, in three views (say luminance at 0, 45 and 75°
+/// to the normal). So many `windows` lie along seams, and as many along fake borders.
 pub fn compare_seams<const N: usize>(
     mesh: &Mesh,
     sets: [&Patches; N],
@@ -181,7 +169,6 @@ impl Strips<'_> {
         };
         Place {
             edge: (ends, along as f32),
-            ends: edge.ends[side].map(|v| v as u32),
             axes: [lie(DVec2::new(y.y, -x.y)), lie(DVec2::new(-y.x, x.x))],
             normal,
             azimuth: tangent * libm::cosf(turn) + normal.cross(tangent) * libm::sinf(turn),

@@ -33,12 +33,6 @@ fn sound_share(mesh: &Mesh, faces: &[Face], set: &[Vec2]) -> f64 {
     if all > 0.0 { sound / all } else { 0.0 }
 }
 
-/// Whether UV set `set` exists and can carry a texture: at least 90 % of the skin's area has finite coordinates whose
-/// triangles are not squeezed to a line or point (singular values within a factor of 50).
-pub fn usable(mesh: &Mesh, set: usize) -> bool {
-    mesh.uv_sets.get(set).is_some_and(|uv| sound_share(mesh, &Face::all(mesh), uv) >= USABLE_SHARE)
-}
-
 /// See [`super::parameterise`].
 pub(super) fn parameterise(mesh: &Mesh, direction: &[Vec3], tile_edge_m: f32, set: usize) -> Result<Patches> {
     const HINT: &str = "use --parameterisation atlas, or another --uv-set";

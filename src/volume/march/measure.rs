@@ -1,8 +1,7 @@
 //! Optical depth of undercoat along rays.
 
 use super::volume::Volume;
-use super::{Journey, Start, Stepping, Steps, Traveller};
-use crate::math::Vec3;
+use super::{Journey, Stepping, Steps, Traveller};
 use crate::math::lanes::{self, F32s, Isa, MOST, Mask, Row};
 use crate::volume::shell::prisms::Prisms;
 
@@ -11,12 +10,6 @@ impl Volume<'_> {
     /// for each optical depth passed.
     pub fn depths_along(&self, journeys: &[Journey], stepping: &Stepping, haste: f32, enough: f32) -> (Vec<f32>, u64) {
         lanes::run(Measure { volume: self, journeys, stepping, haste, enough })
-    }
-
-    /// Optical depth along one ray.
-    pub fn depth_along(&self, origin_m: Vec3, direction: Vec3, start: Start, stepping: &Stepping, enough: f32) -> f32 {
-        let journey = Journey { origin_m, direction, start, far_m: f32::INFINITY };
-        self.depths_along(&[journey], stepping, 0.0, enough).0[0]
     }
 }
 

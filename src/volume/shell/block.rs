@@ -16,14 +16,6 @@ pub struct Block {
 }
 
 impl Block {
-    /// Of `d` subdivisions and `layers`, from values by i_l·4^d + i, as equation (3) orders them.
-    pub fn new(d: u32, layers: u32, values: &[f32]) -> Self {
-        debug_assert_eq!(values.len(), (layers << (2 * d)) as usize, "one value per sub-element");
-        let per_layer = 1 << (2 * d);
-        let column = |i: usize| values.iter().skip(i).step_by(per_layer);
-        Self { d, layers, values: (0..per_layer).flat_map(column).map(|&v| code(v)).collect() }
-    }
-
     /// Of `d` subdivisions and `layers`, from what [`codes`] gives by i·layers + i_l.
     pub fn of_codes(d: u32, layers: u32, codes: Vec<u8>) -> Self {
         debug_assert_eq!(codes.len(), (layers << (2 * d)) as usize, "one code per sub-element");

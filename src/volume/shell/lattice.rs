@@ -3,7 +3,7 @@
 //! Values at corners, and linear between them, go on from prism to prism, and begin at nothing on an open border that light
 //! comes in over: what is seen there lies before the first sub-element's middle.
 
-use super::block::{code, value};
+use super::block::value;
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, MOST, Row, Scalar, U32s, Vec3s};
 
@@ -39,14 +39,7 @@ pub fn around(d: u32, b: Vec3) -> ([u32; 3], Vec3) {
 }
 
 impl Lattice {
-    /// Of `d` subdivisions, from values by level and then in the order of [`places`].
-    pub fn new(d: u32, values: &[f32]) -> Self {
-        let per_level = corners(d) as usize;
-        let column = |i: usize| values.iter().skip(i).step_by(per_level);
-        Self::of_codes(d, (0..per_level).flat_map(column).map(|&v| code(v)).collect())
-    }
-
-    /// Of `d` subdivisions, from what [`code`] gives by corner and level.
+    /// Of `d` subdivisions, from what [`code`](super::block::code) gives by corner and level.
     pub fn of_codes(d: u32, mut codes: Vec<u8>) -> Self {
         debug_assert_eq!(codes.len() % corners(d) as usize, 0, "one value per corner and level");
         codes.resize(codes.len() + SPARE, 0);

@@ -53,16 +53,4 @@ impl<'a> Shell<'a> {
     pub fn bytes(&self) -> usize {
         self.offsets_m.len() * size_of::<Vec3>() + self.neighbours.bytes()
     }
-
-    /// A field's mean at barycentric coordinates `b` of triangle `t`.
-    pub fn scalar(&self, values: &[f32], t: u32, b: Vec3) -> f32 {
-        let [i, j, k] = self.skin.triangles[t as usize].map(|v| values[v as usize]);
-        i * b.x + j * b.y + k * b.z
-    }
-
-    /// A field's mean at barycentric coordinates `b` of triangle `t`.
-    pub fn vector(&self, values: &[Vec3], t: u32, b: Vec3) -> Vec3 {
-        let [i, j, k] = self.skin.triangles[t as usize].map(|v| values[v as usize]);
-        i * b.x + j * b.y + k * b.z
-    }
 }

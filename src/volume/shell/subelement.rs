@@ -5,23 +5,10 @@
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, U32s, Vec3s};
 
-/// Index of the sub-element that holds barycentric coordinates `b` in a layer split `d` times, in 0 … 4^d − 1.
+/// Indices of the sub-elements that hold barycentric coordinates `b` in a layer of n = 2^d along an edge, in 0 … 4^d − 1.
 ///
 /// Points on a lattice line go to the row nearer to the edge opposite to corner 0, and within a row by what eq. (1) gives
 /// for corner 1; points outside the triangle to a sub-element on its rim.
-pub fn index(b: Vec3, d: u32) -> u32 {
-    let n = (1_u32 << d) as f32;
-    let clamped = |b: f32| ((1.0 - b) * n).clamp(0.0, n);
-    let (u0, u1) = (clamped(b.x), clamped(b.y));
-    let u2 = 2.0 * n - u0 - u1;
-    let last = (1_i32 << d) - 1;
-    let row = (u0 as i32).min(last);
-    let (i1, i2) = ((u1 as i32).min(last), (u2.clamp(0.0, n) as i32).min(last));
-    // Equation (2).
-    (row * (row + 1) + (i1 - i2).clamp(-row, row)) as u32
-}
-
-/// [`index`] in lanes; `n` is 2^d.
 #[inline(always)]
 pub fn indices<I: Isa>(b: Vec3s<I>, n: F32s<I>) -> U32s<I> {
     let (zero, one, last) = (F32s::splat(0.0), F32s::splat(1.0), n - 1.0);
@@ -30,6 +17,7 @@ pub fn indices<I: Isa>(b: Vec3s<I>, n: F32s<I>) -> U32s<I> {
     let u2 = (n * 2.0 - u0 - u1).max(zero).min(n);
     let row = u0.floor().min(last);
     let across = u1.floor().min(last) - u2.floor().min(last);
+    // Equation (2).
     (row * (row + 1.0) + across.max(-row).min(row)).to_whole()
 }
 
