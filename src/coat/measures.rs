@@ -4,7 +4,7 @@ use super::seams::{BeforeAfter, look};
 use crate::asset::{Asset, Part};
 use crate::data::coat::{CoatPrimitive, Sampled, Tile};
 use crate::data::mesh::Mesh;
-use crate::data::patches::{Patches, Seams, Spread, Stats};
+use crate::data::patches::{Seams, Spread, Stats};
 use crate::error::Result;
 use crate::fur::patch;
 use crate::math::Vec3;
@@ -114,20 +114,14 @@ impl Measures {
     pub fn worn(part: &Part, worn: &CoatPrimitive, tile: &Tile, metres_per_unit: f64) -> Result<Self> {
         let skin = part.mesh(metres_per_unit)?;
         let mut times: HashMap<[u32; 3], usize> = skin.triangles.iter().map(|&t| (sorted(t), 0)).collect();
-        let triangles: Vec<[u32; 3]> = worn.triangles.iter().map(|t| t.map(|v| worn.base_vertex[v as usize])).collect();
+        let triangles = worn.skin_triangles();
         for &triangle in &triangles {
             *times.entry(sorted(triangle)).or_default() += 1;
         }
         let offset = worlds(part, worn, &worn.offset, metres_per_unit / f64::from(tile.height_m));
         let axis = worlds(part, worn, &worn.axis, metres_per_unit);
         let mesh = Mesh { triangles, ..skin };
-        let patches = Patches {
-            base_vertex: worn.base_vertex.clone(),
-            uv: worn.uv.clone(),
-            patch: worn.patch.clone(),
-            triangles: worn.triangles.clone(),
-            ..Patches::default()
-        };
+        let patches = worn.patches();
         let mut stats = patch::measure(&mesh, &axis, tile.edge_m, &patches);
         let mut used = worn.patch.clone();
         used.sort_unstable();

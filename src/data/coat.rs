@@ -1,6 +1,7 @@
 //! The product: tiles of hair and the primitives that wear them (`docs/extension/`).
 
 use super::image::Image8;
+use super::patches::Patches;
 use crate::math::{Vec2, Vec3, Vec4};
 
 /// Angles between ray and normal for which a gain is stored, degrees.
@@ -127,6 +128,22 @@ pub struct Blend {
 }
 
 impl CoatPrimitive {
+    /// Its triangles on the skin: vertices of the base primitive.
+    pub fn skin_triangles(&self) -> Vec<[u32; 3]> {
+        self.triangles.iter().map(|triangle| triangle.map(|v| self.base_vertex[v as usize])).collect()
+    }
+
+    /// Its texture coordinates alone; nothing is measured.
+    pub fn patches(&self) -> Patches {
+        Patches {
+            base_vertex: self.base_vertex.clone(),
+            uv: self.uv.clone(),
+            patch: self.patch.clone(),
+            triangles: self.triangles.clone(),
+            ..Patches::default()
+        }
+    }
+
     /// The part of it that some of its triangles are, on the vertices that those need. Fins stay where both ends do.
     pub fn part(&self, keep: impl Fn(usize) -> bool) -> Self {
         let triangles: Vec<[u32; 3]> =

@@ -83,4 +83,26 @@ impl Strands {
     pub fn points_of_m(&self, i: usize) -> &[Vec3] {
         &self.points_m[i * self.points_per_strand..(i + 1) * self.points_per_strand]
     }
+
+    /// No hair yet, of the same kind.
+    pub fn none_alike(&self) -> Self {
+        Self {
+            points_per_strand: self.points_per_strand,
+            points_m: Vec::new(),
+            roots: Vec::new(),
+            root_radius_m: Vec::new(),
+            tint: Vec::new(),
+            id: Vec::new(),
+            profile: self.profile,
+        }
+    }
+
+    /// Adds hair `i` of `others`, with `points_m` in place of its points, as many, and `widening` times as wide.
+    pub fn push_alike(&mut self, others: &Self, i: usize, points_m: impl IntoIterator<Item = Vec3>, widening: f32) {
+        self.points_m.extend(points_m);
+        self.roots.push(others.roots[i]);
+        self.root_radius_m.push(others.root_radius_m[i] * widening);
+        self.tint.push(others.tint[i]);
+        self.id.push(others.id[i]);
+    }
 }

@@ -95,14 +95,7 @@ fn usd_curves_hold_the_hairs() {
 
 #[test]
 fn no_hair_is_a_file_too() {
-    let strands = Strands {
-        points_m: Vec::new(),
-        roots: Vec::new(),
-        root_radius_m: Vec::new(),
-        tint: Vec::new(),
-        id: Vec::new(),
-        ..some_hair()
-    };
+    let strands = some_hair().none_alike();
     assert!(cyhair::read(&encode(&export(&strands), Format::CyHair).unwrap()).points.is_empty());
     let text = String::from_utf8(encode(&export(&strands), Format::Usda).unwrap()).unwrap();
     assert!(usda::read(&text).values["_2_bent_skins/GuardHair.points"].list().is_empty());

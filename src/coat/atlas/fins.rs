@@ -55,7 +55,7 @@ pub fn grown(skins: &[Skin<'_>], hair: [&Fibre; 2], like: &TileHair, seed: u64) 
         })
         .collect();
     let [guard, undercoat] = hair;
-    let mut all = TileHair { guard: empty(&like.guard), ..like.clone() };
+    let mut all = TileHair { guard: like.guard.none_alike(), ..like.clone() };
     for (i, strip) in strips.iter().enumerate() {
         strip.grow(guard, combine(key(i), 1), i, &mut all.guard);
     }
@@ -65,18 +65,6 @@ pub fn grown(skins: &[Skin<'_>], hair: [&Fibre; 2], like: &TileHair, seed: u64) 
         strips[place].column(&of_skin, at, place)
     });
     Some(all)
-}
-
-fn empty(like: &Strands) -> Strands {
-    Strands {
-        points_per_strand: like.points_per_strand,
-        points_m: Vec::new(),
-        roots: Vec::new(),
-        root_radius_m: Vec::new(),
-        tint: Vec::new(),
-        id: Vec::new(),
-        profile: like.profile,
-    }
 }
 
 /// A strip of skin, laid flat where it is.

@@ -31,15 +31,7 @@ pub fn flatten(
     region: &Region,
     texel_m: f32,
 ) -> Strands {
-    let mut flat = Strands {
-        points_per_strand: strands.points_per_strand,
-        points_m: Vec::new(),
-        roots: Vec::new(),
-        root_radius_m: Vec::new(),
-        tint: Vec::new(),
-        id: Vec::new(),
-        profile: strands.profile,
-    };
+    let mut flat = strands.none_alike();
     for (index, placed) in region.placed.iter().enumerate() {
         let corners_m = mesh.corners_m(placed.triangle);
         let offsets = mesh.triangles[placed.triangle].map(|v| offset_over_height(fields, v as usize));
@@ -61,11 +53,8 @@ pub fn flatten(
             let chart_from_world = frame.inverse();
             let root_m = strands.points_of_m(hair)[0];
             let at_m = (root * texel_m).extend(0.0);
-            flat.points_m.extend(strands.points_of_m(hair).iter().map(|&p| at_m + chart_from_world * (p - root_m)));
-            flat.roots.push(strands.roots[hair]);
-            flat.root_radius_m.push(strands.root_radius_m[hair]);
-            flat.tint.push(strands.tint[hair]);
-            flat.id.push(strands.id[hair]);
+            let moved = |&p: &Vec3| at_m + chart_from_world * (p - root_m);
+            flat.push_alike(strands, hair, strands.points_of_m(hair).iter().map(moved), 1.0);
         }
     }
     flat

@@ -129,15 +129,11 @@ fn kept(strands: &Strands, passes: impl Fn(Vec3, f32) -> bool) -> Strands {
             passes((pair[0] + pair[1]) * 0.5, half_m)
         })
     };
-    let near: Vec<usize> = (0..strands.len()).filter(near).collect();
-    Strands {
-        points_m: near.iter().flat_map(|&i| strands.points_of_m(i)).copied().collect(),
-        roots: near.iter().map(|&i| strands.roots[i]).collect(),
-        root_radius_m: near.iter().map(|&i| strands.root_radius_m[i]).collect(),
-        tint: near.iter().map(|&i| strands.tint[i]).collect(),
-        id: near.iter().map(|&i| strands.id[i]).collect(),
-        ..*strands
+    let mut kept = strands.none_alike();
+    for i in (0..strands.len()).filter(near) {
+        kept.push_alike(strands, i, strands.points_of_m(i).iter().copied(), 1.0);
     }
+    kept
 }
 
 fn caster(guard: &Strands) -> Caster<'_> {

@@ -45,24 +45,11 @@ impl Thinning {
         if self.hair_px <= 0.0 {
             return None;
         }
-        let points = strands.points_per_strand;
-        let mut left = Strands {
-            points_per_strand: points,
-            points_m: Vec::new(),
-            roots: Vec::new(),
-            root_radius_m: Vec::new(),
-            tint: Vec::new(),
-            id: Vec::new(),
-            profile: strands.profile,
-        };
+        let mut left = strands.none_alike();
         for i in 0..strands.len() {
             let widening = self.widening(strands, i);
             if widening > 0.0 {
-                left.points_m.extend_from_slice(strands.points_of_m(i));
-                left.roots.push(strands.roots[i]);
-                left.root_radius_m.push(strands.root_radius_m[i] * widening);
-                left.tint.push(strands.tint[i]);
-                left.id.push(strands.id[i]);
+                left.push_alike(strands, i, strands.points_of_m(i).iter().copied(), widening);
             }
         }
         Some(left)
