@@ -75,7 +75,7 @@ fn columns(gpu: &Gpu, asset: &asset::Asset, coat: &Coat) -> Vec<f32> {
     let scene = stage::scene(asset, coat, &textures, &pose);
     let renderer = Renderer::new(gpu, &coat.tiles, 1).unwrap();
     let show = Show { skin: false, shells: true, fins: false };
-    let picture = renderer.draw(&scene, &view, show).unwrap().picture;
+    let picture = renderer.prepare(&scene).unwrap().draw(&view, show).unwrap().picture;
     let width = PIXELS as usize / BINS;
     (0..BINS)
         .map(|bin| {

@@ -37,7 +37,12 @@ pub fn ball() -> Picture {
     let tiles = [small_tile()];
     let ball = coats::sphere(0.05, 10, 0.5, &tiles[0]);
     let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
-    renderer.draw(&ball.scene(&tiles), &look(Vec3::new(0.05, 0.05, 0.26), [96, 96]), Show::default()).unwrap().picture
+    renderer
+        .prepare(&ball.scene(&tiles))
+        .unwrap()
+        .draw(&look(Vec3::new(0.05, 0.05, 0.26), [96, 96]), Show::default())
+        .unwrap()
+        .picture
 }
 
 fn light(picture: &Picture) -> Light {
@@ -92,7 +97,8 @@ fn every_kind_of_geometry_adds_to_the_picture() {
     let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
     let view = look(Vec3::new(0.05, 0.05, 0.26), [64, 64]);
     let none = Show { skin: false, shells: false, fins: false };
-    let coverage = |show| renderer.draw(&ball.scene(&tiles), &view, show).unwrap().picture.coverage();
+    let mut prepared = renderer.prepare(&ball.scene(&tiles)).unwrap();
+    let mut coverage = |show| prepared.draw(&view, show).unwrap().picture.coverage();
     assert_eq!(coverage(none), 0.0);
     let skin = coverage(Show { skin: true, ..none });
     let shells = coverage(Show { shells: true, ..none });
@@ -107,11 +113,12 @@ fn light_adds_up_and_darkness_is_dark() {
     let tiles = [small_tile()];
     let ball = coats::sphere(0.05, 10, 0.5, &tiles[0]);
     let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
+    let mut prepared = renderer.prepare(&ball.scene(&tiles)).unwrap();
     let mut view = look(Vec3::new(0.05, 0.05, 0.26), [48, 48]);
     let mut sum = |lights: &[Directional], ambient: f32| -> f64 {
         view.lights = lights.iter().copied().map(Into::into).collect();
         view.ambient = Vec3::splat(ambient);
-        let picture = renderer.draw(&ball.scene(&tiles), &view, Show::default()).unwrap().picture;
+        let picture = prepared.draw(&view, Show::default()).unwrap().picture;
         picture.pixels.iter().map(|p| f64::from(p[0] + p[1] + p[2])).sum()
     };
     let above = Directional { to_light: Vec3::Y, irradiance: Vec3::ONE };
@@ -131,10 +138,10 @@ fn what_cannot_be_drawn_is_refused() {
     let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
     let view = look(Vec3::Z, [16, 16]);
     for view in [Frame { size: [0, 16], ..view.clone() }, Frame { size: [1_000_000, 16], ..view.clone() }] {
-        assert_eq!(kind(renderer.draw(&ball.scene(&tiles), &view, Show::default())), Kind::Usage);
+        assert_eq!(kind(renderer.prepare(&ball.scene(&tiles)).unwrap().draw(&view, Show::default())), Kind::Usage);
     }
     let many = Frame { lights: vec![view.lights[0]; 17], ..view };
-    assert_eq!(kind(renderer.draw(&ball.scene(&tiles), &many, Show::default())), Kind::Usage);
+    assert_eq!(kind(renderer.prepare(&ball.scene(&tiles)).unwrap().draw(&many, Show::default())), Kind::Usage);
     assert_eq!(Renderer::new(&gpu, &tiles, 9).err().unwrap().kind, Kind::Usage);
     let mut broken = small_tile();
     broken.shells.medium[1].pop();

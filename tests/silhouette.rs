@@ -91,7 +91,7 @@ fn measured(gpu: &Gpu, fibres: [&Fibre; 2], lean_rad: f32, shows: &[Show]) -> ([
     let strands = rings(&Caster::new(scene).render(&rays, DepthRange::ALL).alpha, height_m);
     let renderer = Renderer::new(gpu, &tiles, 2).unwrap();
     let ours = shows.iter().map(|&show| {
-        let drawn = renderer.draw(&furred.scene(&tiles), &view(), show).unwrap();
+        let drawn = renderer.prepare(&furred.scene(&tiles)).unwrap().draw(&view(), show).unwrap();
         rings(&drawn.picture.pixels.iter().map(|p| p[3]).collect::<Vec<_>>(), height_m)
     });
     (strands, ours.collect())

@@ -54,7 +54,7 @@ fn on_gpu(renderer: &Renderer<'_>, tiles: &[Tile], direction: Vec3, lean_rad: f3
     plane.uv.iter_mut().for_each(|uv| *uv = texture * *uv);
     let mut scene = plane.scene(tiles);
     scene.furs[0].axes = vec![Vec3::X; plane.uv.len()];
-    renderer.draw(&scene, &oblique(direction, tiles[0].edge_m), SHELLS).unwrap().picture
+    renderer.prepare(&scene).unwrap().draw(&oblique(direction, tiles[0].edge_m), SHELLS).unwrap().picture
 }
 
 /// Mean and root mean square difference.

@@ -146,7 +146,7 @@ fn a_sheet_holds_every_view() {
 fn a_report_says_what_was_drawn() {
     let (asset, coat) = creature();
     let report = viewer::screenshot(&asset, &coat, &small()).unwrap().report;
-    for step in ["open device", "draw skin", "draw far shells", "draw fins", "draw near shells", "develop"] {
+    for step in ["open device", "draw: skin", "draw: far shells", "draw: fins", "draw: near shells", "draw: develop"] {
         assert!(report.steps.0.iter().any(|s| s.name == step), "{step} is missing");
     }
     let furred: u64 = coat.primitives.iter().map(|p| p.triangles.len() as u64).sum();

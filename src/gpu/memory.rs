@@ -3,6 +3,7 @@
 use super::Gpu;
 use crate::data::image::Image8;
 use crate::error::{Error, Kind, Result};
+use std::marker::PhantomData;
 use wgpu::util::DeviceExt;
 
 /// How the bytes of an image are to be read and filtered.
@@ -26,6 +27,35 @@ fn half_of_unorm(byte: u8) -> u16 {
     // 1/255 is far above the smallest normal half, so rebiasing the exponent (127 to 15) and rounding ten bits of
     // mantissa is all there is to do.
     ((bits - (112 << 23) + (1 << 12)) >> 13) as u16
+}
+
+/// Where texels laid out as `T` wait to be read by the host.
+pub struct ReadBack<T> {
+    buffer: wgpu::Buffer,
+    texels: PhantomData<T>,
+    row_bytes: u32,
+    /// Of a row in the buffer: rows begin at multiples of what the device can copy to.
+    padded_bytes: u32,
+}
+
+impl<T: bytemuck::Pod> ReadBack<T> {
+    /// Records the copy of `texture`, the one it was made for.
+    pub fn copy(&self, encoder: &mut wgpu::CommandEncoder, texture: &wgpu::Texture) {
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(self.padded_bytes), rows_per_image: None };
+        let into = wgpu::TexelCopyBufferInfo { buffer: &self.buffer, layout };
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), into, texture.size());
+    }
+
+    /// The texels, rows from the top, once the copy was submitted and done.
+    ///
+    /// # Errors
+    /// As [`Gpu::read_buffer`].
+    pub fn texels(&self, gpu: &Gpu) -> Result<Vec<T>> {
+        let bytes = gpu.read_buffer(&self.buffer)?;
+        let rows = bytes.chunks_exact(self.padded_bytes as usize);
+        Ok(rows.flat_map(|row| bytemuck::pod_collect_to_vec::<u8, T>(&row[..self.row_bytes as usize])).collect())
+    }
 }
 
 /// A texture of one or more layers, with mips, and the bytes it holds.
@@ -169,37 +199,17 @@ impl Gpu {
         }))
     }
 
-    /// The texels of a target whose format is laid out as `T`, rows from the top. Submits `encoder` first.
-    ///
-    /// # Errors
-    /// [`Kind::Device`] as [`Gpu::finish`].
-    pub fn read_texels<T: bytemuck::Pod>(
-        &self,
-        mut encoder: wgpu::CommandEncoder,
-        texture: &wgpu::Texture,
-    ) -> Result<Vec<T>> {
+    /// A way for the texels of `texture`, whose format is laid out as `T`, to come back, picture after picture.
+    pub fn read_back<T: bytemuck::Pod>(&self, texture: &wgpu::Texture) -> ReadBack<T> {
         let row_bytes = texture.width() * size_of::<T>() as u32;
-        let padded = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let padded_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("read back"),
-            size: u64::from(padded) * u64::from(texture.height()),
+            size: u64::from(padded_bytes) * u64::from(texture.height()),
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        encoder.copy_texture_to_buffer(
-            texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
-            },
-            texture.size(),
-        );
-        self.finish(encoder)?;
-        let bytes = self.read_buffer(&buffer)?;
-        Ok(bytes
-            .chunks_exact(padded as usize)
-            .flat_map(|row| bytemuck::pod_collect_to_vec::<u8, T>(&row[..row_bytes as usize]))
-            .collect())
+        ReadBack { buffer, texels: PhantomData, row_bytes, padded_bytes }
     }
 
     /// The bytes of a buffer made with `MAP_READ`.

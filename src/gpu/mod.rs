@@ -11,7 +11,7 @@ mod timer;
 
 pub use adapter::{Adapter, AdapterKind, Choice, adapters, missing_adapter_hint};
 pub use compute::{Binding, Kernel};
-pub use memory::{Coding, TextureArray};
+pub use memory::{Coding, ReadBack, TextureArray};
 pub use shader::{Library, Source, compose};
 pub use timer::Timer;
 

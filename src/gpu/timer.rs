@@ -3,30 +3,47 @@
 use super::Gpu;
 use crate::error::Result;
 
-/// Timestamps around a number of passes; measures nothing on adapters that have none.
+/// Timestamps around a number of passes, picture after picture; measures nothing on adapters that have no clock.
 pub struct Timer {
-    queries: Option<wgpu::QuerySet>,
+    clock: Option<Clock>,
     passes: u32,
+}
+
+/// Where timestamps are kept and how they come back.
+struct Clock {
+    queries: wgpu::QuerySet,
+    resolved: wgpu::Buffer,
+    readable: wgpu::Buffer,
 }
 
 impl Timer {
     /// A timer for `passes` passes.
     pub fn new(gpu: &Gpu, passes: u32) -> Self {
+        let buffer = |usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("timer"),
+                size: u64::from(passes) * 16,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
         let able = gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
-        let queries = able.then(|| {
-            gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+        let clock = able.then(|| Clock {
+            queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("timer"),
                 ty: wgpu::QueryType::Timestamp,
                 count: 2 * passes,
-            })
+            }),
+            resolved: buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
+            readable: buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ),
         });
-        Self { queries, passes }
+        Self { clock, passes }
     }
 
     /// What pass number `pass` writes.
     pub fn writes(&self, pass: u32) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
-        self.queries.as_ref().map(|query_set| wgpu::RenderPassTimestampWrites {
-            query_set,
+        self.clock.as_ref().map(|clock| wgpu::RenderPassTimestampWrites {
+            query_set: &clock.queries,
             beginning_of_pass_write_index: Some(2 * pass),
             end_of_pass_write_index: Some(2 * pass + 1),
         })
@@ -34,35 +51,28 @@ impl Timer {
 
     /// What compute pass number `pass` writes.
     pub fn compute_writes(&self, pass: u32) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
-        self.queries.as_ref().map(|query_set| wgpu::ComputePassTimestampWrites {
-            query_set,
+        self.clock.as_ref().map(|clock| wgpu::ComputePassTimestampWrites {
+            query_set: &clock.queries,
             beginning_of_pass_write_index: Some(2 * pass),
             end_of_pass_write_index: Some(2 * pass + 1),
         })
     }
 
-    /// Milliseconds of each pass, once the passes were submitted; `None` where the adapter has no clock.
+    /// Ends the measuring: recorded after the last of the passes, into the same encoder.
+    pub fn stop(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(Clock { queries, resolved, readable }) = &self.clock {
+            encoder.resolve_query_set(queries, 0..2 * self.passes, resolved, 0);
+            encoder.copy_buffer_to_buffer(resolved, 0, readable, 0, readable.size());
+        }
+    }
+
+    /// Milliseconds of each pass, once the passes were submitted and done; `None` where the adapter has no clock.
     ///
     /// # Errors
-    /// As [`Gpu::finish`].
+    /// As [`Gpu::read_buffer`].
     pub fn read_ms(&self, gpu: &Gpu) -> Result<Option<Vec<f64>>> {
-        let Some(queries) = &self.queries else { return Ok(None) };
-        let size = u64::from(self.passes) * 16;
-        let buffer = |usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("timer"),
-                size,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
-        let resolved = buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC);
-        let readable = buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
-        let mut encoder = gpu.encoder("timer");
-        encoder.resolve_query_set(queries, 0..2 * self.passes, &resolved, 0);
-        encoder.copy_buffer_to_buffer(&resolved, 0, &readable, 0, size);
-        gpu.finish(encoder)?;
-        let ticks: Vec<[u64; 2]> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(&readable)?);
+        let Some(clock) = &self.clock else { return Ok(None) };
+        let ticks: Vec<[u64; 2]> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(&clock.readable)?);
         let ms_per_tick = f64::from(gpu.queue.get_timestamp_period()) * 1e-6;
         Ok(Some(ticks.iter().map(|[start, end]| end.saturating_sub(*start) as f64 * ms_per_tick).collect()))
     }

@@ -1,6 +1,7 @@
 //! Floor 4: draws a coat as a game would, after skinning and morphing: skin, fins, shells inner to outer.
 //!
-//! [`DrawList`] says what to draw, [`Frame`] from where and in which light; [`gpu::Renderer`] draws it. [`cpu`] is the law of
+//! [`DrawList`] says what to draw, [`Frame`] from where and in which light. A [`gpu::Renderer`] holds what
+//! all poses share, [`gpu::Renderer::prepare`] uploads one, [`gpu::Prepared::draw`] draws it. [`cpu`] is the law of
 //! opacity at one pixel, in plain steps.
 
 pub mod cpu;

@@ -13,12 +13,13 @@ use crate::error::{Error, Result};
 use crate::gpu::{Choice, Gpu};
 use crate::math::{DVec3, Vec3};
 use crate::metrics::timing::{Recorder, Report};
-use crate::runtime::gpu::{Drawn, Renderer};
-use crate::runtime::{DrawList, Frame, Picture, Show};
+use crate::runtime::gpu::{Prepared, Renderer};
+use crate::runtime::{Frame, Picture, Show};
 use crate::stage::camera::{Orbit, Viewpoint, depth_range_m};
 use crate::stage::file::Format;
 use crate::stage::light::Lit;
 use crate::stage::{exr, options, png, tone};
+use std::time::Instant;
 use subject::subject;
 
 /// How to look at a coat.
@@ -156,9 +157,9 @@ pub fn turntable(asset: &Asset, coat: &Coat, options: &Options, views: u32) -> R
     };
     let turned = |i| Orbit { azimuth_deg: orbit.azimuth_deg + 360.0 * f64::from(i) / f64::from(views), ..orbit };
     let viewpoints: Vec<_> = (0..views).map(|i| Viewpoint::Orbit(turned(i))).collect();
-    let shots = shoot(asset, coat, options, &viewpoints)?;
+    let mut shots = shoot(asset, coat, options, &viewpoints)?;
     let columns = f64::from(views).sqrt().ceil() as u32;
-    let picture = sheet(&shots.pictures, columns);
+    let picture = shots.recorder.step("draw: sheet", || sheet(&shots.pictures, columns), |_| 0);
     Ok(shots.developed(picture, options))
 }
 
@@ -175,7 +176,7 @@ struct Shots {
 impl Shots {
     fn developed(mut self, picture: Picture, options: &Options) -> Shot {
         let develop = || tone::develop(&picture.film(), &options.stage.development);
-        let image = self.recorder.step("develop", develop, bytes_of);
+        let image = self.recorder.step("draw: develop", develop, bytes_of);
         Shot { picture, image, report: self.recorder.finish(), legend: self.legend }
     }
 }
@@ -208,13 +209,19 @@ fn shoot(asset: &Asset, coat: &Coat, options: &Options, viewpoints: &[Viewpoint]
     let origin_m = subject.origin_m;
     let points_m = stage::points_m(&scene);
     let renderer = recorder.step(
-        "upload tiles",
+        "passes and tiles",
         || Renderer::new(&gpu, &coat.tiles, options.samples),
         |renderer| renderer.as_ref().map_or(0, Renderer::tile_bytes),
     )?;
+    let mut prepared = recorder.step(
+        "geometry",
+        || renderer.prepare(&scene),
+        |prepared| prepared.as_ref().map_or(0, Prepared::bytes),
+    )?;
+    let stage = &options.stage;
     let mut pictures = Vec::with_capacity(viewpoints.len());
     for viewpoint in viewpoints {
-        let stage = &options.stage;
+        let start = Instant::now();
         let camera = viewpoint.camera(&subject, stage.aspect())?;
         let [near_m, far_m] = depth_range_m(&camera, &points_m, origin_m);
         let lit = if charted && stage.lights.is_empty() && stage.environment.is_none() {
@@ -232,32 +239,31 @@ fn shoot(asset: &Asset, coat: &Coat, options: &Options, viewpoints: &[Viewpoint]
             lights: lit.lights,
             ambient: lit.ambient,
         };
-        let drawn = draw(&renderer, &scene, &view, show, &mut recorder)?;
-        pictures.push(drawn.picture);
+        recorder.row("draw: camera and light", ms_since(start), 0);
+        pictures.push(draw(&mut prepared, &view, show, &mut recorder)?);
     }
     Ok(Shots { pictures, recorder, legend })
 }
 
-fn draw(
-    renderer: &Renderer<'_>,
-    scene: &DrawList<'_>,
-    view: &Frame,
-    show: Show,
-    recorder: &mut Recorder,
-) -> Result<Drawn> {
-    let start = std::time::Instant::now();
-    let drawn = renderer.draw(scene, view, show)?;
+/// Draws one view. What it costs is in the rows that begin with `draw:`, to the last of it; what is in others is paid once.
+fn draw(prepared: &mut Prepared<'_>, view: &Frame, show: Show, recorder: &mut Recorder) -> Result<Picture> {
+    let start = Instant::now();
+    let drawn = prepared.draw(view, show)?;
     let mut on_device = 0.0;
     for pass in &drawn.passes {
         on_device += pass.ms.unwrap_or(0.0);
-        recorder.row(&format!("draw {}", pass.name), pass.ms.unwrap_or(0.0), pass.bytes);
+        recorder.row(&format!("draw: {}", pass.name), pass.ms.unwrap_or(0.0), pass.bytes);
         recorder.count("draw calls", pass.draw_calls);
         recorder.count("triangles", pass.triangles);
     }
-    // Where the adapter has no clock, all of the frame stands here.
-    recorder.row("upload geometry, read back", start.elapsed().as_secs_f64() * 1e3 - on_device, drawn.target_bytes);
+    // Where the adapter has no clock, all of the passes stands here.
+    recorder.row("draw: wait and read back", ms_since(start) - on_device, drawn.target_bytes);
     recorder.count("pictures", 1);
-    Ok(drawn)
+    Ok(drawn.picture)
+}
+
+fn ms_since(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
 }
 
 /// Pictures of one size side by side; what is left over at the end is empty.

@@ -107,6 +107,7 @@ impl Band {
             });
             kernels.strands.dispatch(&mut pass, &groups, resident.strand_count.div_ceil(64));
         }
+        timer.stop(&mut encoder);
         gpu.finish(encoder)?;
         Ok(timer.read_ms(gpu)?.map(|ms| ms[0]))
     }
@@ -146,6 +147,7 @@ impl Band {
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&uniform));
         let mut encoder = gpu.encoder("band");
         self.record(&mut encoder, kernels, resident, pixels, |step| timer.compute_writes(step));
+        timer.stop(&mut encoder);
         encoder.copy_buffer_to_buffer(&self.totals, 0, &read_totals, 0, totals_bytes);
         encoder.copy_buffer_to_buffer(&self.film, 0, &read_film, 0, film_bytes);
         gpu.finish(encoder)?;

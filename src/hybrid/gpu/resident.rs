@@ -190,6 +190,7 @@ impl Resident {
             let (kernel, threads) = [(&kernels.density, blocks.columns), (&kernels.shadow, stored_bytes[1])][i];
             kernel.dispatch(&mut pass, &[&group, &volumes[i], &filled], threads.div_ceil(64));
         }
+        timer.stop(&mut encoder);
         gpu.finish(encoder)?;
         let volume = gpu.group(&layouts.volume, &[&stored[0], &stored[1]]);
         let per_strand = uniform.points_per_strand as usize;

@@ -1,12 +1,13 @@
-//! What a picture needs on the device: tiles once, geometry per frame.
+//! What pictures need on the device: tiles, and the geometry of a pose.
 
 use super::layout::{CoatVertex, FinInstance, Mip, SkinVertex, TileUniform};
 use super::pipelines::Layouts;
 use crate::asset::material::Wrap;
-use crate::data::coat::{Sampled, Tile};
+use crate::data::coat::{FinTexture, Sampled, ShellStack, Tile};
 use crate::data::image::Image8;
 use crate::error::Result;
 use crate::gpu::{Coding, Gpu, TextureArray};
+use crate::math::Vec2;
 use crate::runtime::draw_list::{CoatMesh, SkinMesh};
 
 /// Bytes of a vertex or index list.
@@ -97,6 +98,30 @@ impl GpuTile {
         );
         let bytes = [&albedo, &medium, &ends, &fin_albedo, &fin_tangent].iter().map(|texture| texture.bytes).sum();
         Ok(Self { group, fin, layers: shells.layers, bytes })
+    }
+}
+
+/// A tile of nothing: transmittance 1 everywhere.
+pub fn bare_tile() -> Tile {
+    let texel =
+        |channels: u32| vec![vec![Image8 { width: 1, height: 1, channels, pixels: vec![255; channels as usize] }]];
+    let fin = texel(4).remove(0);
+    Tile {
+        preset: String::new(),
+        sampled: Sampled::Square,
+        edge_m: 1.0,
+        height_m: 1.0,
+        shells: ShellStack {
+            layers: 2,
+            size: 1,
+            gains: vec![[1.0; 9]],
+            slopes: vec![Vec2::ZERO; 2],
+            extinction_scales_per_m: vec![1.0],
+            albedo: texel(4),
+            medium: texel(4),
+            ends: texel(1),
+        },
+        fin: FinTexture { size: [1, 1], width_m: 1.0, thickness_m: 1.0, albedo: fin.clone(), tangent: fin },
     }
 }
 

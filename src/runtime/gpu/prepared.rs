@@ -1,0 +1,150 @@
+//! A pose on the device, ready to be drawn from anywhere in any light.
+
+use super::layout::ViewUniform;
+use super::resources::{GpuFur, GpuSkin};
+use super::targets::Targets;
+use super::{Drawn, PassCost, Renderer};
+use crate::error::{Error, Result};
+use crate::gpu::Timer;
+use crate::runtime::draw_list::{DrawList, Frame, MAX_LIGHTS, Show};
+use bytemuck::Zeroable;
+
+/// The passes in the order drawn.
+const PASSES: [&str; 4] = ["skin", "far shells", "fins", "near shells"];
+
+/// A posed asset on the device, and what each picture of it is drawn with.
+pub struct Prepared<'a> {
+    renderer: &'a Renderer<'a>,
+    skins: Vec<GpuSkin>,
+    furs: Vec<GpuFur>,
+    /// Camera and lights, written anew for each picture.
+    view: wgpu::Buffer,
+    view_group: wgpu::BindGroup,
+    timer: Timer,
+    /// Those of the last picture, kept for the next of the same size.
+    targets: Option<Targets>,
+}
+
+impl<'a> Prepared<'a> {
+    pub(super) fn new(renderer: &'a Renderer<'a>, scene: &DrawList<'_>) -> Result<Self> {
+        let (gpu, layouts) = (renderer.gpu, &renderer.pipelines.layouts);
+        let view = gpu.buffer("view", &[ViewUniform::zeroed()], wgpu::BufferUsages::UNIFORM);
+        Ok(Self {
+            renderer,
+            skins: scene.skins.iter().map(|skin| GpuSkin::new(gpu, layouts, skin)).collect::<Result<_>>()?,
+            furs: scene.furs.iter().map(|fur| GpuFur::new(gpu, layouts, fur)).collect(),
+            view_group: gpu.group(&layouts.view, &[&view]),
+            view,
+            timer: Timer::new(gpu, PASSES.len() as u32),
+            targets: None,
+        })
+    }
+
+    /// Memory of geometry and the skin's textures, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.skins.iter().map(|skin| skin.bytes).chain(self.furs.iter().map(|fur| fur.bytes)).sum()
+    }
+
+    /// Draws one picture. It is cleared to transparent black.
+    ///
+    /// # Errors
+    /// [`crate::error::Kind::Usage`] for a size the adapter cannot hold or too many lights; [`crate::error::Kind::Device`]
+    /// from the device.
+    pub fn draw(&mut self, view: &Frame, show: Show) -> Result<Drawn> {
+        if view.lights.len() > MAX_LIGHTS {
+            return Err(Error::usage("too many lights")
+                .with_field("light")
+                .with_found(view.lights.len())
+                .with_expected(format!("at most {MAX_LIGHTS}")));
+        }
+        let Renderer { gpu, pipelines, samples, .. } = self.renderer;
+        let targets = match self.targets.take().filter(|targets| targets.size == view.size) {
+            Some(targets) => targets,
+            None => Targets::new(gpu, pipelines, view.size, *samples)?,
+        };
+        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view)));
+        let mut encoder = gpu.encoder("frame");
+        let mut passes = Vec::with_capacity(PASSES.len());
+        for (index, name) in PASSES.into_iter().enumerate() {
+            let mut pass = targets.pass(&mut encoder, name, index, self.timer.writes(index as u32));
+            pass.set_bind_group(0, &self.view_group, &[]);
+            let mut cost = PassCost { name, ms: None, bytes: 0, draw_calls: 0, triangles: 0 };
+            match index {
+                0 => self.draw_skins(&mut pass, show.skin, &mut cost),
+                1 if show.shells => self.draw_shells(&mut pass, show, false, &mut cost),
+                2 if show.fins => self.draw_fins(&mut pass, &mut cost),
+                3 if show.shells => self.draw_shells(&mut pass, show, true, &mut cost),
+                _ => {}
+            }
+            passes.push(cost);
+        }
+        targets.resolve(&mut encoder, pipelines);
+        self.timer.stop(&mut encoder);
+        gpu.finish(encoder)?;
+        let picture = targets.picture(gpu, view)?;
+        if let Some(times) = self.timer.read_ms(gpu)? {
+            passes.iter_mut().zip(times).for_each(|(pass, ms)| pass.ms = Some(ms));
+        }
+        let target_bytes = targets.bytes;
+        self.targets = Some(targets);
+        Ok(Drawn { picture, passes, target_bytes })
+    }
+
+    fn draw_skins(&self, pass: &mut wgpu::RenderPass<'_>, visible: bool, cost: &mut PassCost) {
+        pass.set_pipeline(if visible { &self.renderer.pipelines.skin } else { &self.renderer.pipelines.skin_depth });
+        for skin in self.skins.iter().filter(|skin| skin.index_count > 0) {
+            let tile = skin.tile.map_or(&self.renderer.bare, |tile| &self.renderer.tiles[tile]);
+            pass.set_bind_group(1, &tile.group, &[]);
+            pass.set_bind_group(2, &skin.material, &[]);
+            pass.set_vertex_buffer(0, skin.vertices.slice(..));
+            pass.set_index_buffer(skin.indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..skin.index_count, 0, 0..1);
+            cost.bytes += skin.bytes;
+            cost.draw_calls += 1;
+            cost.triangles += u64::from(skin.index_count / 3);
+        }
+    }
+
+    /// One side of all shells, slab after slab over all furs, so that slabs of neighbouring parts interleave.
+    fn draw_shells(&self, pass: &mut wgpu::RenderPass<'_>, show: Show, near: bool, cost: &mut PassCost) {
+        let furs = &self.furs;
+        let pipelines = if near { &self.renderer.pipelines.near_shells } else { &self.renderer.pipelines.far_shells };
+        pass.set_pipeline(&pipelines[usize::from(show.fins)]);
+        let most = self.renderer.tiles.iter().map(|tile| tile.layers).max().unwrap_or(0);
+        let inner_to_outer: Vec<u32> = (1..most).collect();
+        let order: Vec<u32> = if near { inner_to_outer } else { inner_to_outer.into_iter().rev().collect() };
+        let mut turn: Vec<&GpuFur> = furs.iter().collect();
+        for layer in order {
+            for i in (1..furs.len()).filter(|&i| furs[i].over_last) {
+                let pair = [&furs[i - 1], &furs[i]];
+                (turn[i - 1], turn[i]) = if layer % 2 == 0 { pair.into() } else { (pair[1], pair[0]) };
+            }
+            for fur in turn.iter().filter(|fur| layer < self.renderer.tiles[fur.tile].layers && fur.shell_vertices > 0)
+            {
+                pass.set_bind_group(1, &self.renderer.tiles[fur.tile].group, &[]);
+                pass.set_bind_group(2, &fur.shells, &[]);
+                pass.draw(0..fur.shell_vertices, layer..layer + 1);
+                cost.draw_calls += 1;
+                cost.triangles += u64::from(fur.shell_vertices / 3);
+            }
+        }
+        cost.bytes = self.bytes_read();
+    }
+
+    fn draw_fins(&self, pass: &mut wgpu::RenderPass<'_>, cost: &mut PassCost) {
+        pass.set_pipeline(&self.renderer.pipelines.fins);
+        for fur in self.furs.iter().filter(|fur| fur.fin_vertices > 0) {
+            pass.set_bind_group(1, &self.renderer.tiles[fur.tile].group, &[]);
+            pass.set_bind_group(2, &fur.fins, &[]);
+            pass.set_bind_group(3, &self.renderer.tiles[fur.tile].fin, &[]);
+            pass.draw(0..fur.fin_vertices, 0..1);
+            cost.draw_calls += 1;
+            cost.triangles += u64::from(fur.fin_vertices / 3);
+        }
+        cost.bytes = self.bytes_read();
+    }
+
+    fn bytes_read(&self) -> u64 {
+        self.furs.iter().map(|fur| fur.bytes).chain(self.renderer.tiles.iter().map(|tile| tile.bytes)).sum()
+    }
+}
