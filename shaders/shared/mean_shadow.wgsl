@@ -1,7 +1,7 @@
 // The key light's shadow in hair as dense as it is in the mean, as src/volume/mean/ keeps it.
 #define_import_path furrier::mean_shadow
 
-#import furrier::scene::{scene, triangles, tables, TABLE, LINEAR}
+#import furrier::scene::{scene, triangles, tables, columns, TABLE, LINEAR}
 #import furrier::prism::around_corners
 
 // Intervals of height up to the tips.
@@ -22,7 +22,7 @@ fn of_level(column: u32, level: u32) -> vec3<f32> {
 
 // Number `which` of a triangle's lattice.
 fn of_column(triangle: u32, which: u32, at: f32) -> vec3<f32> {
-    let column = u32(tables[triangles[triangle].mean_at + which]);
+    let column = columns[triangles[triangle].mean_at + which];
     let low = min(u32(at), LAYERS - 1u);
     return mix(of_level(column, low), of_level(column, low + 1u), at - f32(low));
 }

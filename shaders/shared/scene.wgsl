@@ -114,7 +114,7 @@ struct Triangle {
     rest_area: f32,
     // AT_BORDER, LINEAR.
     traits: u32,
-    // Subdivisions of the mean shadow, and where in the tables the numbers of its columns begin.
+    // Subdivisions of the mean shadow, and where its columns begin.
     mean_splits: u32,
     mean_at: u32,
 }
@@ -152,6 +152,8 @@ struct Strand {
 @group(0) @binding(4) var<storage, read> lights: array<Light>;
 @group(0) @binding(5) var<storage, read> strands: array<Strand>;
 @group(0) @binding(6) var<storage, read> points_m: array<f32>;
+// Of the mean shadow, by triangle and corner of its lattice.
+@group(0) @binding(7) var<storage, read> columns: array<u32>;
 
 fn prism_of(triangle: u32) -> Prism {
     let c = triangles[triangle].corners;

@@ -5,6 +5,7 @@ use super::medium::Medium;
 use super::piece::Piece;
 use super::point::ShellPoint;
 use super::skin::{Plane, Skin};
+use crate::fur::groom::clump::Nearby;
 
 /// Share of the distance by which skin may lie farther along a ray than along one of the same part of a pixel.
 const GRAZING: f64 = 0.02;
@@ -24,6 +25,8 @@ pub struct Along {
     done_m: f64,
     /// Whether the last stretch was empty.
     empty: bool,
+    /// Clump centres around the last point: the next one mostly shares them.
+    nearby: Nearby,
 }
 
 impl Along {
@@ -31,7 +34,8 @@ impl Along {
     pub fn new(ray: Ray, skin: &Skin) -> Self {
         let met = skin.meet(&ray, 0.0);
         let plane = met.map(|(_, place)| skin.plane(place.triangle));
-        Self { ray, skin: met, plane, pieces: Vec::new(), skin_seen: 0.0, done_m: 0.0, empty: true }
+        let (pieces, nearby) = (Vec::new(), Nearby::default());
+        Self { ray, skin: met, plane, pieces, skin_seen: 0.0, done_m: 0.0, empty: true, nearby }
     }
 
     /// Where the skin ends it, m.
@@ -86,7 +90,7 @@ impl Along {
             return;
         }
         let end_m = (self.done_m + medium.stride_m()).min(self.far_m());
-        self.empty = !medium.pieces(&self.ray, [self.done_m, end_m], &mut self.pieces);
+        self.empty = !medium.pieces(&self.ray, [self.done_m, end_m], &mut self.nearby, &mut self.pieces);
         self.done_m = end_m;
     }
 }

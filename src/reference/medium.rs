@@ -13,7 +13,6 @@ use crate::math::lanes::MOST;
 use crate::math::{DVec3, Vec3};
 use crate::volume::scene::Scene;
 use crate::volume::shell::Shell;
-use std::cell::RefCell;
 
 /// Optical depth of a piece of undercoat, where that is as dense as in the mean: its middle stands for all of it.
 const DEEPEST: f64 = 0.15;
@@ -31,11 +30,6 @@ const OUTER: f64 = 0.774_596_669_241_483_4;
 
 /// Slabs of the shell up to the undercoat's tips, and from there to the guard hair's.
 const SLABS: [usize; 2] = [6, 3];
-
-thread_local! {
-    /// Clump centres around the last point: the next one mostly shares them.
-    static NEARBY: RefCell<Nearby> = RefCell::default();
-}
 
 /// The shell's content.
 #[derive(Debug)]
@@ -127,21 +121,20 @@ impl<'a> Medium<'a> {
     }
 
     /// Puts undercoat along a ray between two distances after `out`, in short pieces; tells whether there is shell at all.
-    pub fn pieces(&self, ray: &Ray, [from_m, to_m]: [f64; 2], out: &mut Vec<Piece>) -> bool {
+    /// `nearby` may have been used for points close by.
+    pub fn pieces(&self, ray: &Ray, [from_m, to_m]: [f64; 2], nearby: &mut Nearby, out: &mut Vec<Piece>) -> bool {
         let Some(below) = self.below(Counted::Undercoat) else { return false };
         let (first, mut any) = (out.len(), false);
         self.slabs.visit(ray, [from_m, to_m], below, |sight, _, part, middle| {
             any = true;
             self.cut(sight, part, middle, out);
         });
-        NEARBY.with_borrow_mut(|nearby| {
-            for some in out[first..].chunks_mut(MOST) {
-                let mut points = Points::default();
-                some.iter().for_each(|piece| points.push(&self.ground(&piece.place)));
-                let crowding = points.crowding(&self.shell.undercoat, nearby);
-                some.iter_mut().zip(crowding).for_each(|(piece, crowding)| piece.depth *= f64::from(crowding));
-            }
-        });
+        for some in out[first..].chunks_mut(MOST) {
+            let mut points = Points::default();
+            some.iter().for_each(|piece| points.push(&self.ground(&piece.place)));
+            let crowding = points.crowding(&self.shell.undercoat, nearby);
+            some.iter_mut().zip(crowding).for_each(|(piece, crowding)| piece.depth *= f64::from(crowding));
+        }
         piece::put_in_order(out, first);
         any
     }
@@ -178,6 +171,7 @@ impl<'a> Medium<'a> {
     pub fn depth_along(&self, ray: &Ray, from_m: f64, to_m: f64, counted: Counted, enough: f64) -> f64 {
         let Some(below) = self.below(counted) else { return 0.0 };
         let (mut sum, mut at_m, mut empty) = (0.0, from_m, true);
+        let mut nearby = Nearby::default();
         while sum < enough {
             // Boxes are looked for only where the last stretch was empty.
             if empty {
@@ -190,14 +184,12 @@ impl<'a> Medium<'a> {
             let strides = if at_m == from_m || sum > DIM { 1.5 } else { 4.0 };
             let end_m = (at_m + strides * self.stride_m()).min(to_m);
             empty = true;
-            NEARBY.with_borrow_mut(|nearby| {
-                let mut crowd = Crowd::new(&self.shell.undercoat, nearby);
-                self.slabs.visit(ray, [at_m, end_m], below, |sight, slab, part, middle| {
-                    empty = false;
-                    sum += self.depth_of(sight, self.slabs.slab(slab).1[0] < 1.0, part, middle, counted, &mut crowd);
-                });
-                sum += crowd.rest();
+            let mut crowd = Crowd::new(&self.shell.undercoat, &mut nearby);
+            self.slabs.visit(ray, [at_m, end_m], below, |sight, slab, part, middle| {
+                empty = false;
+                sum += self.depth_of(sight, self.slabs.slab(slab).1[0] < 1.0, part, middle, counted, &mut crowd);
             });
+            sum += crowd.rest();
             at_m = end_m;
         }
         sum

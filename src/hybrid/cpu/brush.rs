@@ -1,7 +1,7 @@
 //! Ribbons of guard hair into the fragments of a tile.
 
 use super::gather::Gathered;
-use super::pass::{Band, Pass};
+use super::pass::{Band, Hair, Pass};
 use super::scratch::TileView;
 use crate::data::strands::Strands;
 use crate::hybrid::strands::ribbon::{self, NARROW, Narrow, Window};
@@ -120,8 +120,8 @@ impl Brush<'_, '_> {
                     let pixel = origin + lane * down + (found.begin[lane] as usize + k - first_pixel) * along;
                     let fragment = Fragment::new(z_m, piece.id, Parts(parts[lane]), streak + lane as u32);
                     self.guard.add(pixel, fragment, || {
-                        let (at, linear) = (self.place.pixel(pixel), found.linear.0[lane]);
-                        pass.before_skin(&piece.a, &piece.b, linear, at, z_m, skin, pixel)
+                        let hair = Hair { a: &piece.a, b: &piece.b, linear: found.linear.0[lane], z_m };
+                        pass.before_skin(&hair, self.place.pixel(pixel), skin, pixel)
                     });
                 }
             }
@@ -150,7 +150,8 @@ impl Brush<'_, '_> {
             let fragment = Fragment::new(z_m, piece.id, parts, self.guard.next_streak());
             self.guard.make_room(1);
             self.guard.add(pixel, fragment, || {
-                pass.before_skin(&piece.a, &piece.b, share.linear, share.pixel, z_m, skin, pixel)
+                let hair = Hair { a: &piece.a, b: &piece.b, linear: share.linear, z_m };
+                pass.before_skin(&hair, share.pixel, skin, pixel)
             });
             if self.guard.count() > before {
                 let radiance = radiance_at(&piece.looks, F32s::<Scalar>::of(&sites.s)).rows();

@@ -46,6 +46,17 @@ pub(super) struct Band {
     pub(super) bins: Bins,
 }
 
+/// A place on a hair that is drawn.
+pub(super) struct Hair<'a> {
+    /// Ends of the piece it lies on.
+    pub(super) a: &'a Knot,
+    pub(super) b: &'a Knot,
+    /// Where between them on the picture, 0 to 1.
+    pub(super) linear: f32,
+    /// Its depth along the optical axis, m.
+    pub(super) z_m: f32,
+}
+
 impl<'a> Pass<'a> {
     pub(super) fn new(prepared: &'a Prepared<'a>, shadows: Option<&'a Shadows<'a>>, view: View) -> Self {
         let scene = &prepared.scene;
@@ -88,28 +99,19 @@ impl<'a> Pass<'a> {
     /// they count where they lie before the skin of their own place. Seen from its bare side, skin hides what lies behind
     /// either.
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "a piece, where on it, and the pixel")]
-    pub(super) fn before_skin(
-        &self,
-        a: &Knot,
-        b: &Knot,
-        linear: f32,
-        pixel: [i32; 2],
-        z_m: f32,
-        skin: &SkinTile,
-        at: usize,
-    ) -> bool {
+    pub(super) fn before_skin(&self, hair: &Hair<'_>, pixel: [i32; 2], skin: &SkinTile, at: usize) -> bool {
+        let z_m = hair.z_m;
         let (triangle, before_middle) = (skin.triangle[at], z_m < skin.z_m[at]);
         // Planes are asked for only where they decide.
         if triangle == NONE || before_middle != self.bare[triangle as usize] {
             return before_middle;
         }
-        self.before_plane(a, b, linear, pixel, z_m, triangle)
+        self.before_plane(hair, pixel, triangle)
     }
 
     /// Whether a hair lies before the plane of a triangle, at its own place within the pixel.
     #[inline(never)]
-    fn before_plane(&self, a: &Knot, b: &Knot, linear: f32, pixel: [i32; 2], z_m: f32, triangle: u32) -> bool {
+    fn before_plane(&self, &Hair { a, b, linear, z_m }: &Hair<'_>, pixel: [i32; 2], triangle: u32) -> bool {
         let at = |from: f32, to: f32, pixel: i32| (from + linear * (to - from)).clamp(pixel as f32, (pixel + 1) as f32);
         let pixel = Vec2::new(at(a.x, b.x, pixel[0]), at(a.y, b.y, pixel[1]));
         let ray = ((pixel - self.view.centre_px) / self.view.focal_px).extend(1.0);

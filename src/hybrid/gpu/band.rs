@@ -3,7 +3,7 @@
 use super::kernels::Kernels;
 use super::layout::{Totals, ViewUniform};
 use super::plan::{FILM_BYTES, Room, START_BYTES, STRETCH_BYTES};
-use super::resident::Resident;
+use super::seen::Seen;
 use crate::error::Result;
 use crate::gpu::{Gpu, Timer};
 use crate::stage::projection::View;
@@ -43,7 +43,7 @@ impl Band {
     ///
     /// # Errors
     /// [`crate::error::Kind::Device`] where one is too large.
-    pub(super) fn new(gpu: &Gpu, kernels: &Kernels, resident: &Resident, room: Room) -> Result<Self> {
+    pub(super) fn new(gpu: &Gpu, kernels: &Kernels, seen: &Seen, room: Room) -> Result<Self> {
         let pixel = |label, bytes| gpu.storage(label, room.pixels, bytes);
         let view = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("view"),
@@ -76,13 +76,13 @@ impl Band {
         of_frame.extend(&pixels);
         Ok(Self {
             frame: gpu.group(&layouts.frame, &of_frame),
-            entrances: gpu.group(&layouts.entrances, &[&resident.faces, &starts]),
-            march: gpu.group(&layouts.march, &[&resident.faces, &starts, &resident.inside, &stretches]),
+            entrances: gpu.group(&layouts.entrances, &[&seen.faces, &starts]),
+            march: gpu.group(&layouts.march, &[&seen.faces, &starts, &seen.inside, &stretches]),
             guard: gpu.group(&layouts.guard, &[&z, &point, &share, &pixel]),
             order: gpu.group(&layouts.order, &[&z, &point, &pixel, &order]),
-            composite: gpu.group(&layouts.composite, &[&z, &point, &share, &order, &stretches, &resident.looks, &film]),
+            composite: gpu.group(&layouts.composite, &[&z, &point, &share, &order, &stretches, &seen.looks, &film]),
             poison: gpu.group(&layouts.one, &[&film]),
-            looks: gpu.group(&layouts.one, &[&resident.looks]),
+            looks: gpu.group(&layouts.one, &[&seen.looks]),
             view,
             totals,
             pixels,
@@ -95,17 +95,17 @@ impl Band {
     ///
     /// # Errors
     /// As [`Gpu::finish`].
-    pub(super) fn light(&self, gpu: &Gpu, kernels: &Kernels, resident: &Resident, view: &View) -> Result<Option<f64>> {
+    pub(super) fn light(&self, gpu: &Gpu, kernels: &Kernels, seen: &Seen, view: &View) -> Result<Option<f64>> {
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view, [0, 0])));
         let timer = Timer::new(gpu, 1);
         let mut encoder = gpu.encoder("light");
-        let groups = [&resident.group, &resident.volume, &self.frame, &self.looks];
+        let groups = [&seen.group, &seen.volume, &self.frame, &self.looks];
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("light"),
                 timestamp_writes: timer.compute_writes(0),
             });
-            kernels.strands.dispatch(&mut pass, &groups, resident.strand_count.div_ceil(64));
+            kernels.strands.dispatch(&mut pass, &groups, seen.strand_count.div_ceil(64));
         }
         timer.stop(&mut encoder);
         gpu.finish(encoder)?;
@@ -116,14 +116,7 @@ impl Band {
     ///
     /// # Errors
     /// As [`Gpu::finish`].
-    pub(super) fn draw(
-        &self,
-        gpu: &Gpu,
-        kernels: &Kernels,
-        resident: &Resident,
-        view: &View,
-        rows: [u32; 2],
-    ) -> Result<Drawn> {
+    pub(super) fn draw(&self, gpu: &Gpu, kernels: &Kernels, seen: &Seen, view: &View, rows: [u32; 2]) -> Result<Drawn> {
         let pixels = (rows[1] - rows[0]) as usize * view.size[0];
         let totals_bytes = size_of::<Totals>() as u64;
         let film_bytes = (pixels * FILM_BYTES) as u64;
@@ -146,7 +139,7 @@ impl Band {
         };
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&uniform));
         let mut encoder = gpu.encoder("band");
-        self.record(&mut encoder, kernels, resident, pixels, |step| timer.compute_writes(step));
+        self.record(&mut encoder, kernels, seen, pixels, |step| timer.compute_writes(step));
         timer.stop(&mut encoder);
         encoder.copy_buffer_to_buffer(&self.totals, 0, &read_totals, 0, totals_bytes);
         encoder.copy_buffer_to_buffer(&self.film, 0, &read_film, 0, film_bytes);
@@ -162,7 +155,7 @@ impl Band {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         kernels: &Kernels,
-        resident: &Resident,
+        seen: &Seen,
         pixels: usize,
         writes: impl Fn(u32) -> Option<wgpu::ComputePassTimestampWrites<'a>>,
     ) {
@@ -170,7 +163,7 @@ impl Band {
         for buffer in [&self.totals, skin_depth, skin_triangle, cursors] {
             encoder.clear_buffer(buffer, 0, None);
         }
-        let common = [&resident.group, &resident.volume, &self.frame];
+        let common = [&seen.group, &seen.volume, &self.frame];
         let own = |group3| [common[0], common[1], common[2], group3];
         let (by_256, by_64) = (pixels.div_ceil(256), pixels.div_ceil(64));
         let begin = |encoder: &mut wgpu::CommandEncoder, step: usize, record: &dyn Fn(&mut wgpu::ComputePass<'_>)| {
@@ -182,22 +175,22 @@ impl Band {
         };
         begin(encoder, 0, &|pass| {
             for kernel in &kernels.skin {
-                kernel.dispatch(pass, &common, resident.triangle_count);
+                kernel.dispatch(pass, &common, seen.triangle_count);
             }
         });
         begin(encoder, 1, &|pass| {
-            kernels.entrances[0].dispatch(pass, &own(&self.entrances), resident.face_count);
+            kernels.entrances[0].dispatch(pass, &own(&self.entrances), seen.face_count);
             kernels.allot[0].dispatch(pass, &common, by_256);
-            kernels.entrances[1].dispatch(pass, &own(&self.entrances), resident.face_count);
+            kernels.entrances[1].dispatch(pass, &own(&self.entrances), seen.face_count);
         });
         begin(encoder, 2, &|pass| {
             kernels.march.dispatch(pass, &own(&self.march), by_64);
         });
         encoder.clear_buffer(cursors, 0, None);
         begin(encoder, 3, &|pass| {
-            kernels.guard[0].dispatch(pass, &own(&self.guard), resident.piece_count.div_ceil(64));
+            kernels.guard[0].dispatch(pass, &own(&self.guard), seen.piece_count.div_ceil(64));
             kernels.allot[1].dispatch(pass, &common, by_256);
-            kernels.guard[1].dispatch(pass, &own(&self.guard), resident.piece_count.div_ceil(64));
+            kernels.guard[1].dispatch(pass, &own(&self.guard), seen.piece_count.div_ceil(64));
             kernels.trim.dispatch(pass, &own(&self.guard), by_64);
             // More threads than fragments: how many there are is not known here.
             kernels.order.dispatch(pass, &own(&self.order), self.room.fragments.div_ceil(64));

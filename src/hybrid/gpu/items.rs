@@ -33,7 +33,7 @@ pub struct TriangleItem {
     pub rest_area: f32,
     /// [`AT_BORDER`], [`LINEAR`].
     pub traits: u32,
-    /// Subdivisions of the mean shadow, and where in the tables the numbers of its columns begin.
+    /// Subdivisions of the mean shadow, and where its columns begin.
     pub mean_splits: u32,
     /// As above.
     pub mean_at: u32,

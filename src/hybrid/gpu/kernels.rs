@@ -85,7 +85,7 @@ impl Layouts {
     fn new(gpu: &Gpu) -> Self {
         use Binding::{Read, Uniform, Write};
         Self {
-            scene: gpu.layout("scene", &[Uniform, Read, Read, Read, Read, Read, Read]),
+            scene: gpu.layout("scene", &[Uniform, Read, Read, Read, Read, Read, Read, Read]),
             volume: gpu.layout("volume", &[Read, Read]),
             frame: gpu.layout("frame", &[Uniform, Write, Write, Write, Write, Write, Write, Write]),
             blocks: gpu.layout("blocks", &[Uniform, Read, Write]),

@@ -10,6 +10,7 @@ pub mod kernels;
 pub mod layout;
 pub mod plan;
 mod resident;
+mod seen;
 
 use super::cpu::{add, finish};
 use super::picture::Picture;
@@ -25,26 +26,31 @@ use band::{Band, STEPS};
 use kernels::Kernels;
 use plan::Plan;
 use resident::Resident;
+use seen::Seen;
 use std::time::Instant;
 
-/// A graphics device with the kernels that draw a scene: what does not hang on the camera.
+/// A graphics device with a scene and the kernels that draw it: what does not hang on the camera.
 pub struct GpuRenderer<'a> {
     gpu: &'a Gpu,
     prepared: &'a Prepared<'a>,
     kernels: Kernels,
+    resident: Resident,
     steps: Steps,
 }
 
 /// Makes a device ready to draw a scene.
 ///
 /// # Errors
-/// [`crate::error::Kind::Device`] where the device does not take the kernels.
+/// [`crate::error::Kind::Device`] where the device does not take the kernels, or something does not fit it.
 pub fn prepare<'a>(gpu: &'a Gpu, prepared: &'a Prepared<'a>) -> Result<GpuRenderer<'a>> {
     let start = Instant::now();
     let kernels = Kernels::new(gpu, matches!(prepared.settings.blending, Blending::Simplified { .. }))?;
     let mut steps = Steps::default();
     steps.add_since("kernels", start, 0);
-    Ok(GpuRenderer { gpu, prepared, kernels, steps })
+    let start = Instant::now();
+    let resident = Resident::new(gpu, prepared)?;
+    steps.add_since("shell", start, resident.bytes);
+    Ok(GpuRenderer { gpu, prepared, kernels, resident, steps })
 }
 
 impl GpuRenderer<'_> {
@@ -61,29 +67,29 @@ impl GpuRenderer<'_> {
         let start = Instant::now();
         let view = settings.view(camera, prepared.scene.skin.origin_m)?;
         let volume = prepared.volume(&view);
-        let resident = Resident::new(self, volume.as_ref(), &view, budget_bytes / 2)?;
-        let filled_ms = resident.fill_ms.as_ref().map_or(0.0, |ms| ms.iter().sum());
-        picture.steps.add("shell", ms_since(start) - filled_ms, resident.bytes[0] as u64);
+        let seen = Seen::new(self, volume.as_ref(), &view, budget_bytes / 2)?;
+        let filled_ms = seen.fill_ms.as_ref().map_or(0.0, |ms| ms.iter().sum());
+        picture.steps.add("shell", ms_since(start) - filled_ms, seen.bytes[0] as u64);
         for (i, name) in ["densities", "shadows"].into_iter().enumerate() {
-            let ms = resident.fill_ms.as_ref().map_or(0.0, |ms| ms[i]);
-            picture.steps.add(name, ms, resident.stored_bytes[i] as u64);
+            let ms = seen.fill_ms.as_ref().map_or(0.0, |ms| ms[i]);
+            picture.steps.add(name, ms, seen.stored_bytes[i] as u64);
         }
 
         let largest = gpu.largest_storage_bytes() as usize;
         let mut plan = Plan::new(view.size, budget_bytes, largest);
-        let mut band = Band::new(gpu, kernels, &resident, plan.room)?;
-        let lit_ms = band.light(gpu, kernels, &resident, &view)?;
-        picture.steps.add("shaded strands", lit_ms.unwrap_or(0.0), resident.bytes[1] as u64);
+        let mut band = Band::new(gpu, kernels, &seen, plan.room)?;
+        let lit_ms = band.light(gpu, kernels, &seen, &view)?;
+        picture.steps.add("shaded strands", lit_ms.unwrap_or(0.0), seen.bytes[1] as u64);
         picture.film = Film::of_layers(settings.size[0], settings.size[1], settings.layers);
         let height = view.size[1];
         let mut row = 0;
         while row < height {
             let rows = [row as u32, (row + plan.rows).min(height) as u32];
-            let drawn = band.draw(gpu, kernels, &resident, &view, rows)?;
+            let drawn = band.draw(gpu, kernels, &seen, &view, rows)?;
             if drawn.totals.overflow != 0 {
                 plan = plan.grown(&drawn.totals)?;
                 drop(band);
-                band = Band::new(gpu, kernels, &resident, plan.room)?;
+                band = Band::new(gpu, kernels, &seen, plan.room)?;
                 continue;
             }
             for (i, name) in STEPS.into_iter().enumerate() {
@@ -95,9 +101,9 @@ impl GpuRenderer<'_> {
             unpack(&mut picture.film, settings.edge_samples(), row, &drawn.film);
             row = rows[1] as usize;
         }
-        picture.counts.strands = resident.strand_count as u64;
-        picture.counts.pieces = resident.piece_count as u64;
-        picture.counts.subelements = resident.stored_bytes[0] as u64;
+        picture.counts.strands = seen.strand_count as u64;
+        picture.counts.pieces = seen.piece_count as u64;
+        picture.counts.subelements = seen.stored_bytes[0] as u64;
         finish(&mut picture.film, settings.edge_samples());
         Ok(picture)
     }

@@ -13,7 +13,8 @@ use crate::math::lanes::{F32s, Isa, MOST, Row, U32s, Vec3Row, Vec3s};
 
 /// How often a strand is lit: logarithms of the opaque hair's radiance, linear RGB. Shadow, and radiance with it, goes
 /// exponentially from one to the next.
-pub const LOOKS: usize = MOST;
+pub const LOOKS: usize = 8;
+const _: () = assert!(LOOKS <= MOST, "a row holds all looks of a strand");
 
 /// Where along the hair, in [0, 1], look `i` is taken: closer to each other towards the tips, which are seen most.
 pub fn look_s(i: usize) -> f32 {
