@@ -14,7 +14,7 @@ pub enum Kind {
     Output,
     /// No graphics adapter, or it failed.
     Device,
-    /// A comparison exceeded its limit (`compare --max-flip`).
+    /// A comparison exceeded its limit (`compare`).
     Difference,
 }
 
@@ -40,8 +40,10 @@ pub struct Error {
     pub what: String,
     /// The file concerned.
     pub file: Option<PathBuf>,
-    /// The place inside it, e.g. `accessors[3].count` or `--size`.
+    /// The place inside it, e.g. `accessors[3].count`.
     pub field: Option<String>,
+    /// What was asked for and cannot be, as the library calls it, e.g. `texture size`; the command line names its flag.
+    pub parameter: Option<&'static str>,
     /// The value found there.
     pub found: Option<String>,
     /// The values that would have been accepted.
@@ -56,7 +58,16 @@ pub type Result<T> = std::result::Result<T, Error>;
 impl Error {
     /// A failure of `kind`, described by `what`.
     pub fn new(kind: Kind, what: impl Into<String>) -> Self {
-        Self { kind, what: what.into(), file: None, field: None, found: None, expected: None, hint: None }
+        Self {
+            kind,
+            what: what.into(),
+            file: None,
+            field: None,
+            parameter: None,
+            found: None,
+            expected: None,
+            hint: None,
+        }
     }
 
     /// A broken or unsupported input.
@@ -78,6 +89,12 @@ impl Error {
     /// Names the field.
     pub fn with_field(mut self, field: impl Into<String>) -> Self {
         self.field = Some(field.into());
+        self
+    }
+
+    /// Names the parameter: words, as they stand in a flag's name.
+    pub fn with_parameter(mut self, parameter: &'static str) -> Self {
+        self.parameter = Some(parameter);
         self
     }
 
@@ -106,7 +123,9 @@ impl fmt::Display for Error {
         if let Some(file) = &self.file {
             write!(f, "\n  file: {}", file.display())?;
         }
-        for (label, value) in [("field", &self.field), ("found", &self.found), ("expected", &self.expected)] {
+        let place = self.field.as_deref().or(self.parameter);
+        let lines = [("field", place), ("found", self.found.as_deref()), ("expected", self.expected.as_deref())];
+        for (label, value) in lines {
             if let Some(value) = value {
                 write!(f, "\n  {label}: {value}")?;
             }

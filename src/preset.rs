@@ -106,7 +106,7 @@ impl Preset {
             Ok(_) => std::fs::read_to_string(path)
                 .map_err(|e| unreadable("the preset file cannot be read").with_found(e).with_expected("UTF-8 text")),
             Err(_) => Err(Error::usage("there is no such preset")
-                .with_field("--preset")
+                .with_parameter("preset")
                 .with_found(name_or_file)
                 .with_expected(format!("a TOML file or one of {}", Self::names().collect::<Vec<_>>().join(", ")))
                 .with_hint("`furrier presets list` says what each is")),
@@ -150,9 +150,10 @@ impl Preset {
     pub fn with_settings(self, settings: &[String]) -> Result<Self> {
         let fault = |setting: &str, found: &dyn std::fmt::Display| {
             Error::usage("the setting is not valid")
-                .with_field(format!("--set {setting}"))
+                .with_parameter("set")
+                .with_field(setting)
                 .with_found(found)
-                .with_hint("write table.key=value, as in `--set guard.length.mm=30`; docs/presets.md lists the keys")
+                .with_hint("write table.key=value, as in `set` guard.length.mm=30; docs/presets.md lists the keys")
         };
         let mut preset = self;
         for setting in settings {

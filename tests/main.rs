@@ -50,6 +50,8 @@ mod squares;
 mod stage;
 mod strand_files;
 mod summary;
+#[cfg(target_os = "linux")]
+mod surface;
 mod sweeps;
 mod thinned;
 mod twins;

@@ -278,7 +278,7 @@ fn lights_are_read_or_refused() {
         "spot:0,1,0:0,0,0:30:1,1,1",
         "spot:0,1,0:0,1,0:120:1,1,1",
     ] {
-        assert_eq!(read(bad).unwrap_err().field.as_deref(), Some("--light"), "{bad}");
+        assert_eq!(read(bad).unwrap_err().parameter, Some("light"), "{bad}");
     }
 }
 

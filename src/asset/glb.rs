@@ -81,7 +81,7 @@ pub fn assemble(json: &[u8], binary: &[u8]) -> Result<Vec<u8>> {
     let too_long = |_| {
         Error::new(crate::error::Kind::Output, "a GLB cannot hold more than 4 GiB")
             .with_found(format!("{total} bytes"))
-            .with_hint("write .gltf instead, or lower --texture-size")
+            .with_hint("write .gltf instead, or lower `texture size`")
     };
     let length = u32::try_from(total).map_err(too_long)?;
     let mut out = Vec::with_capacity(total);

@@ -52,7 +52,7 @@ impl Asset {
         match name.parse::<usize>() {
             Ok(index) if index < names.len() => Ok(index),
             _ => Err(Error::usage("there is no such animation")
-                .with_field("--animation")
+                .with_parameter("animation")
                 .with_found(name)
                 .with_expected(if names.is_empty() {
                     "none: the file has no animation".into()

@@ -37,7 +37,7 @@ pub fn select(parts: &[Part], names: &[String]) -> Result<Vec<usize>> {
     };
     if let Some(unknown) = names.iter().find(|name| !parts.iter().any(|part| part.material_name == **name)) {
         return Err(Error::usage("no part has this material")
-            .with_field("--material")
+            .with_parameter("material")
             .with_found(unknown)
             .with_expected(known()));
     }
@@ -47,9 +47,9 @@ pub fn select(parts: &[Part], names: &[String]) -> Result<Vec<usize>> {
     let chosen: Vec<usize> = (0..parts.len()).filter(|&i| wanted(&parts[i])).collect();
     if chosen.is_empty() {
         return Err(Error::usage("by their names, all materials are bare")
-            .with_field("--material")
+            .with_parameter("material")
             .with_expected(known())
-            .with_hint("name the material to fur with --material"));
+            .with_hint("name the material to fur with `material`"));
     }
     Ok(chosen)
 }

@@ -66,7 +66,7 @@ fn camera(at: &At<'_>, placed: &DMat4, origin_m: DVec3) -> Result<Camera> {
     let kind = at.need("type")?;
     if kind.text()? != "perspective" {
         return Err(Error::usage(format!("a camera of this kind takes no picture here: {}", kind.text()?))
-            .with_field("--camera")
+            .with_parameter("camera")
             .with_expected("a perspective camera"));
     }
     let yfov = at.need("perspective")?.need("yfov")?;

@@ -22,7 +22,7 @@ pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>)
             .with_field("regions")
             .with_found(&region.preset)
             .with_expected("a preset without regions")
-            .with_hint("use --parameterisation lapped or uv"));
+            .with_hint("use `parameterisation` lapped or uv"));
     }
     let (fibres, recipe) = (task.fibres(task.preset), recipe(task.preset));
     let texels = texels.unwrap_or_else(|| (TEXELS.0 * recipe.shells.texture_size).min(TEXELS.1));
@@ -77,7 +77,7 @@ pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>)
     });
     let accuracy = judged.into_iter().flatten().collect();
     let note = format!(
-        "the atlas of {} has {texels}\u{b2} texels of {:.2} mm; --texture-size N changes that",
+        "the atlas of {} has {texels}\u{b2} texels of {:.2} mm; `texture size` N changes that",
         task.preset.name,
         square.edge_m / texels as f32 * 1e3
     );

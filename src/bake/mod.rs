@@ -133,7 +133,7 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
     for (material, _) in &request.presets {
         if !asset.parts.iter().any(|part| &part.material_name == material) {
             return Err(Error::usage("a preset is for a material that the asset does not have")
-                .with_field("--preset")
+                .with_parameter("preset")
                 .with_found(material)
                 .with_expected(names(asset.parts.iter()).join(", ")));
         }
@@ -336,10 +336,10 @@ fn refuse_own_input(input: &str, out: &Path) -> Result<()> {
     let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
     if same(Path::new(input), out) {
         return Err(Error::usage("the output would overwrite the input")
-            .with_field("--output")
+            .with_parameter("output")
             .with_found(out.display())
             .with_expected("another file")
-            .with_hint("name a new file with -o"));
+            .with_hint("name a new file with `output`"));
     }
     Ok(())
 }

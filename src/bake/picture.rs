@@ -80,7 +80,7 @@ impl Grown {
         notes.extend(scale.note.clone());
         let pose = match &request.pose {
             Some((animation, seconds)) => {
-                let index = asset.animation(animation).map_err(|e| e.with_field("--pose"))?;
+                let index = asset.animation(animation).map_err(|e| e.with_parameter("pose"))?;
                 Some(asset.pose(index, *seconds)?)
             }
             None => None,

@@ -55,7 +55,7 @@ pub fn scale(units: Units, preset: &Preset, asset: &Asset, sample: bool) -> Resu
     let note = (units == Units::Auto && !sample).then(|| {
         format!(
             "one unit of the file is taken as {metres_per_unit:.4} m, so that the asset is as large as the {} that the \
-             preset describes ({:.2} m across); --units m|cm|mm|in says otherwise",
+             preset describes ({:.2} m across); `units` m|cm|mm|in says otherwise",
             preset.name, preset.size_m
         )
     });
@@ -66,6 +66,6 @@ pub fn scale(units: Units, preset: &Preset, asset: &Asset, sample: bool) -> Resu
 pub fn length_warning(longest_m: f32, diagonal_m: f64) -> Option<String> {
     let share = f64::from(longest_m) / diagonal_m;
     (!(0.002..=0.5).contains(&share)).then(|| {
-        format!("the longest hair is {share:.4} of the asset's diagonal, outside 0.002 … 0.5: is --units right?")
+        format!("the longest hair is {share:.4} of the asset's diagonal, outside 0.002 … 0.5: is `units` right?")
     })
 }

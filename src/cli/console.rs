@@ -1,5 +1,6 @@
 //! What the command line prints and where: results on stdout, everything else on stderr.
 
+use super::flags::Flags;
 use super::progress::Progress;
 use crate::error::{Error, Kind, Result};
 use serde::Serialize;
@@ -10,11 +11,12 @@ use tracing_subscriber::EnvFilter;
 pub struct Console {
     json: bool,
     quiet: bool,
+    flags: Flags,
 }
 
 impl Console {
-    /// Sets up printing and, on stderr, the library's log.
-    pub fn new(quiet: bool, verbose: u8, json: bool) -> Self {
+    /// Sets up printing and, on stderr, the library's log. What the library calls by its own name is printed as one of `flags`.
+    pub fn new(quiet: bool, verbose: u8, json: bool, flags: Flags) -> Self {
         let level = match (quiet, verbose) {
             (true, _) => "off",
             (_, 0) => "warn",
@@ -28,7 +30,7 @@ impl Console {
             .with_target(false)
             .without_time()
             .init();
-        Self { json, quiet }
+        Self { json, quiet, flags }
     }
 
     /// Prints a command's result: `value` as JSON where asked for, else what `text` writes.
@@ -57,12 +59,12 @@ impl Console {
 
     /// Prints what the user should know but need not act on.
     pub fn note(&self, text: &str) {
-        self.aside(format_args!("{text}"));
+        self.aside(format_args!("{}", self.flags.in_text(text)));
     }
 
     /// Prints what may not be as the user expects.
     pub fn warning(&self, text: &str) {
-        self.aside(format_args!("warning: {text}"));
+        self.aside(format_args!("warning: {}", self.flags.in_text(text)));
     }
 
     fn aside(&self, line: std::fmt::Arguments) {
@@ -82,7 +84,7 @@ impl Console {
         let mut text = String::new();
         let report = miette::GraphicalReportHandler::new_themed(style).with_wrap_lines(false);
         // Writing to a string cannot fail, and a stderr that cannot be written has nobody left to tell.
-        let _ = report.render_report(&mut text, &error);
+        let _ = report.render_report(&mut text, &self.flags.in_error(error));
         let _ = write!(io::stderr(), "{text}");
     }
 

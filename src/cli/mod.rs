@@ -5,6 +5,7 @@ mod compare;
 mod completions;
 mod console;
 mod devices;
+mod flags;
 mod inspect;
 mod output;
 mod presets;
@@ -15,8 +16,9 @@ mod stage;
 mod view;
 
 use crate::error::{Kind, Result};
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use console::Console;
+use flags::Flags;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
@@ -64,15 +66,19 @@ Results go to stdout; progress, warnings and errors to stderr.";
 /// Runs the command line `arguments` (the program's name first) and returns the exit code: 0, or that of the failure's
 /// [`Kind`].
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let cli = match Cli::try_parse_from(arguments) {
-        Ok(cli) => cli,
+    let mut definition = definition();
+    let parsed = definition
+        .try_get_matches_from_mut(arguments)
+        .and_then(|matches| Ok((Cli::from_arg_matches(&matches)?, Flags::of(&definition, &matches))));
+    let (cli, flags) = match parsed {
+        Ok(parsed) => parsed,
         Err(error) => {
             // Help and version are no failures; where they cannot be printed there is nobody left to tell.
             let _ = error.print();
             return if error.use_stderr() { ExitCode::from(Kind::Usage.exit_code()) } else { ExitCode::SUCCESS };
         }
     };
-    let console = Console::new(cli.quiet, cli.verbose, cli.json);
+    let console = Console::new(cli.quiet, cli.verbose, cli.json, flags);
     match cli.command.run(&console) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -84,7 +84,7 @@ impl StageArgs {
             size: size(&self.size)?,
             viewpoint,
             lights: self.lights.iter().map(|light| parse(light)).collect::<Result<_>>()?,
-            ambient: self.ambient.as_deref().map(|rgb| parse_triple(rgb, "--ambient")).transpose()?,
+            ambient: self.ambient.as_deref().map(|rgb| parse_triple(rgb, "ambient")).transpose()?,
             environment: self.env.as_deref().map(Environment::read).transpose()?,
             environment_on_undercoat: false,
             development: Development { exposure_ev: self.exposure, tone, background },

@@ -4,7 +4,7 @@ use crate::error::{Error, Kind, Result};
 use serde::Serialize;
 use std::str::FromStr;
 
-/// What `--device` asks for.
+/// Which adapter is asked for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Choice {
     /// `auto`: the best adapter, hardware before software.
@@ -23,7 +23,7 @@ impl FromStr for Choice {
             None if text == "auto" || text == "gpu" => Ok(Self::Auto),
             Some(("gpu", name)) if !name.trim().is_empty() => Ok(Self::Named(name.trim().to_owned())),
             _ => Err(Error::usage("unknown device")
-                .with_field("--device")
+                .with_parameter("device")
                 .with_found(text)
                 .with_expected("auto, gpu or gpu:NAME")
                 .with_hint("`furrier devices` lists the names")),
@@ -86,14 +86,32 @@ pub fn adapters() -> Vec<Adapter> {
     ranked(&instance()).into_iter().map(|(adapter, _)| adapter).collect()
 }
 
-/// The adapter that `choice` means.
+/// The adapter that `choice` means among those that can present to `surface`, where there is one.
 ///
 /// # Errors
-/// [`Kind::Device`] where there is no adapter at all, naming the package that brings one, or none of the name.
-pub(super) fn choose(choice: &Choice) -> Result<(Adapter, wgpu::Adapter)> {
-    let mut found = ranked(&instance());
+/// [`Kind::Device`] where there is no adapter at all, naming the package that brings one, none that can present, or none of
+/// the name.
+pub(super) fn choose(
+    instance: &wgpu::Instance,
+    choice: &Choice,
+    surface: Option<&wgpu::Surface<'_>>,
+) -> Result<(Adapter, wgpu::Adapter)> {
+    let mut found = ranked(instance);
     if found.is_empty() {
         return Err(Error::new(Kind::Device, "no graphics adapter was found").with_hint(missing_adapter_hint()));
+    }
+    let names = |found: &[(Adapter, wgpu::Adapter)]| {
+        let names: Vec<_> = found.iter().map(|(adapter, _)| adapter.name.as_str()).collect();
+        names.join("; ")
+    };
+    if let Some(surface) = surface {
+        let all = names(&found);
+        found.retain(|(_, handle)| handle.is_surface_supported(surface));
+        if found.is_empty() {
+            return Err(Error::new(Kind::Device, "no graphics adapter can draw into this window")
+                .with_found(all)
+                .with_hint(missing_adapter_hint()));
+        }
     }
     let at = match choice {
         Choice::Auto => Some(0),
@@ -104,14 +122,11 @@ pub(super) fn choose(choice: &Choice) -> Result<(Adapter, wgpu::Adapter)> {
     };
     match at {
         Some(at) => Ok(found.swap_remove(at)),
-        None => {
-            let names: Vec<_> = found.iter().map(|(adapter, _)| adapter.name.as_str()).collect();
-            Err(Error::new(Kind::Device, "no adapter has this name")
-                .with_field("--device")
-                .with_found(format!("{choice:?}"))
-                .with_expected(format!("a part of one of: {}", names.join("; ")))
-                .with_hint("`furrier devices` lists the adapters"))
-        }
+        None => Err(Error::new(Kind::Device, "no adapter has this name")
+            .with_parameter("device")
+            .with_found(format!("{choice:?}"))
+            .with_expected(format!("a part of one of: {}", names(&found)))
+            .with_hint("`furrier devices` lists the adapters")),
     }
 }
 
@@ -127,7 +142,7 @@ pub fn missing_adapter_hint() -> &'static str {
 }
 
 /// The native interfaces only: the GL one would answer silently with a software adapter that lacks what we need.
-fn instance() -> wgpu::Instance {
+pub(super) fn instance() -> wgpu::Instance {
     let backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
     wgpu::Instance::new(wgpu::InstanceDescriptor { backends, ..wgpu::InstanceDescriptor::new_without_display_handle() })
 }

@@ -180,7 +180,7 @@ impl Gpu {
         let limit = self.device.limits().max_texture_dimension_2d;
         if size.iter().any(|&edge| edge == 0 || edge > limit) {
             return Err(Error::usage("the picture does not fit this adapter")
-                .with_field("--size")
+                .with_parameter("size")
                 .with_found(format!("{} x {} with its samples", size[0], size[1]))
                 .with_expected(format!("1 to {limit} along an edge, samples counted"))
                 .with_hint("ask for fewer pixels or fewer samples per pixel"));

@@ -1,18 +1,21 @@
 //! Floor 2: a graphics device and what moves data to it and back. Knows nothing of fur.
 //!
-//! Shaders are composed by name (`shader`), textures and buffers made and read back (`memory`), passes timed (`timer`).
+//! Shaders are composed by name (`shader`), textures and buffers made and read back (`memory`), passes timed (`timer`). A
+//! device may be opened for a window (`surface`), or for none.
 
 mod adapter;
 mod compute;
 pub mod light;
 mod memory;
 mod shader;
+mod surface;
 mod timer;
 
 pub use adapter::{Adapter, AdapterKind, Choice, adapters, missing_adapter_hint};
 pub use compute::{Binding, Kernel};
 pub use memory::{Coding, ReadBack, TextureArray};
 pub use shader::{Library, Source, compose};
+pub use surface::Screen;
 pub use timer::Timer;
 
 use crate::error::{Error, Kind, Result};
@@ -36,7 +39,11 @@ impl Gpu {
     /// # Errors
     /// [`Kind::Device`] where there is none (naming the package that brings one) or it will not open.
     pub fn open(choice: &Choice) -> Result<Self> {
-        let (adapter, handle) = adapter::choose(choice)?;
+        let (adapter, handle) = adapter::choose(&adapter::instance(), choice, None)?;
+        Self::of(adapter, &handle)
+    }
+
+    fn of(adapter: Adapter, handle: &wgpu::Adapter) -> Result<Self> {
         tracing::debug!(%adapter, "graphics adapter");
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("furrier"),
@@ -47,7 +54,9 @@ impl Gpu {
         let (device, queue) = pollster::block_on(handle.request_device(&descriptor)).map_err(|error| {
             Error::new(Kind::Device, "the graphics adapter would not open")
                 .with_found(format!("{adapter}: {error}"))
-                .with_hint("choose another one: `furrier devices` lists them, `--device gpu:NAME` names one")
+                .with_hint(
+                    "choose another one: `furrier devices` lists them, the device gpu:NAME is the one of that name",
+                )
         })?;
         let fault = Arc::new(Mutex::new(None));
         let keeper = Arc::clone(&fault);
@@ -76,7 +85,7 @@ impl Gpu {
         Error::new(Kind::Device, "the graphics device failed")
             .with_field(self.adapter.to_string())
             .with_found(found)
-            .with_hint("try a smaller `--size`, or another adapter by `--device gpu:NAME`")
+            .with_hint("try a smaller picture, or another adapter: the device gpu:NAME is the one of that name")
     }
 
     /// An encoder to record into.

@@ -8,7 +8,7 @@ use crate::error::{Error, Kind, Result};
 use crate::gpu::{AdapterKind, Choice, Gpu, adapters};
 use std::str::FromStr;
 
-/// What `--device` asks for.
+/// What draws.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Device {
     /// A hardware GPU where there is one, else the CPU.

@@ -1,4 +1,4 @@
-//! Time and memory, step by step: what `--report` writes (`docs/steps/metrics.md`).
+//! Time and memory, step by step: what report files hold (`docs/steps/metrics.md`).
 
 use serde::Serialize;
 use std::collections::BTreeMap;

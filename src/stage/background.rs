@@ -28,9 +28,9 @@ impl FromStr for Background {
             return Ok(Self::Backdrop);
         }
         let fault = |error: Error| error.with_expected("backdrop, or R,G,B: linear, each 0 to 1");
-        let colour = super::light::parse_triple(text, "--background").map_err(fault)?;
+        let colour = super::light::parse_triple(text, "background").map_err(fault)?;
         if colour.min_element() < 0.0 || colour.max_element() > 1.0 {
-            let error = Error::usage("a picture has no such colour").with_field("--background").with_found(text);
+            let error = Error::usage("a picture has no such colour").with_parameter("background").with_found(text);
             return Err(fault(error));
         }
         Ok(Self::Colour(colour))

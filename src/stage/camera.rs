@@ -52,10 +52,10 @@ impl FromStr for Orbit {
     fn from_str(text: &str) -> Result<Self> {
         let fault = || {
             Error::usage("the orbit cannot be read")
-                .with_field("--orbit")
+                .with_parameter("orbit")
                 .with_found(text)
                 .with_expected("AZ,EL,DIST: degrees, degrees from -89 to 89, factor from 0.05 to 100")
-                .with_hint("`--orbit 35,12,1` is the default")
+                .with_hint("`orbit` 35,12,1 is the default")
         };
         let numbers: Vec<f64> =
             text.split(',').map(|n| n.trim().parse()).collect::<std::result::Result<_, _>>().map_err(|_| fault())?;
@@ -74,7 +74,7 @@ impl Viewpoint {
         match self {
             Self::Camera(camera) => *camera,
             Self::Orbit(orbit) => orbit.camera(subject, aspect),
-            Self::Named(name) => super::named(&subject.cameras, name, "camera", "--camera")?,
+            Self::Named(name) => super::named(&subject.cameras, name, "camera")?,
         }
         .checked()
     }

@@ -41,20 +41,23 @@ impl Asked {
             Self::Light(light) => light.relative_to(subject.origin_m),
             Self::Named(name) => {
                 let hint = |error: Error| error.with_hint("lights that are no names begin with dir:, point: or spot:");
-                named(&subject.lights, name, "light", "--light").map_err(hint)?.relative_to(subject.origin_m)
+                named(&subject.lights, name, "light").map_err(hint)?.relative_to(subject.origin_m)
             }
         }
-        .map_err(|error| error.with_field("--light"))
+        .map_err(|error| error.with_parameter("light"))
     }
 }
 
 /// Three numbers with commas between.
 ///
 /// # Errors
-/// Names `field`, the value and what was expected.
-pub fn parse_triple(text: &str, field: &str) -> Result<Vec3> {
+/// Names `parameter`, the value and what was expected.
+pub fn parse_triple(text: &str, parameter: &'static str) -> Result<Vec3> {
     numbers(text).map(Vec3::from_array).ok_or_else(|| {
-        Error::usage("expected three numbers").with_field(field).with_found(text).with_expected("X,Y,Z, all finite")
+        Error::usage("expected three numbers")
+            .with_parameter(parameter)
+            .with_found(text)
+            .with_expected("X,Y,Z, all finite")
     })
 }
 
@@ -70,7 +73,7 @@ fn numbers<const N: usize>(text: &str) -> Option<[f32; N]> {
 /// and its intensity; or the name of a light of the asset.
 ///
 /// # Errors
-/// Names `--light`, the value and what was expected.
+/// Names the value and what was expected.
 pub fn parse(text: &str) -> Result<Asked> {
     let Some((kind, rest)) = text.split_once(':').filter(|(kind, _)| ["dir", "point", "spot"].contains(kind)) else {
         return Ok(Asked::Named(text.to_owned()));
@@ -92,9 +95,9 @@ pub fn parse(text: &str) -> Result<Asked> {
             .with_expected(
                 "dir:X,Y,Z:R,G,B, point:X,Y,Z:R,G,B, spot:X,Y,Z:DX,DY,DZ:ANGLE_DEG:R,G,B or the name of a light of the asset",
             )
-            .with_hint("`--light dir:0,-1,-1:3,3,3` shines from above and in front")
+            .with_hint("`light` dir:0,-1,-1:3,3,3 shines from above and in front")
     };
-    let light = read().unwrap_or_else(|| Err(fault())).map_err(|error| error.with_field("--light"))?;
+    let light = read().unwrap_or_else(|| Err(fault())).map_err(|error| error.with_parameter("light"))?;
     Ok(Asked::Light(light))
 }
 

@@ -21,7 +21,7 @@ use crate::error::{Error, Result};
 ///
 /// # Errors
 /// [`crate::error::Kind::Usage`] with the names there are; or why what goes by this one cannot be used.
-fn named<T: Clone>(all: &[Named<T>], name: &str, what: &str, field: &str) -> Result<T> {
+fn named<T: Clone>(all: &[Named<T>], name: &str, what: &'static str) -> Result<T> {
     if let Some(found) = all.iter().find(|one| one.names.iter().any(|n| n == name)) {
         return found.value.clone().map_err(|error| error.with_found(name));
     }
@@ -31,7 +31,7 @@ fn named<T: Clone>(all: &[Named<T>], name: &str, what: &str, field: &str) -> Res
             names.push(name);
         }
     }
-    Err(Error::usage(format!("the asset has no such {what}")).with_field(field).with_found(name).with_expected(
+    Err(Error::usage(format!("the asset has no such {what}")).with_parameter(what).with_found(name).with_expected(
         if names.is_empty() {
             format!("none: the asset has no {what}")
         } else {

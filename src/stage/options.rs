@@ -71,9 +71,9 @@ impl Options {
             let left = ENVIRONMENT_LIGHTS.saturating_sub(lights.len());
             if left == 0 {
                 return Err(Error::usage("the lights leave none to the environment")
-                    .with_field("--light")
+                    .with_parameter("light")
                     .with_found(lights.len())
-                    .with_expected(format!("at most {} beside --env", ENVIRONMENT_LIGHTS - 1)));
+                    .with_expected(format!("at most {} beside `env`", ENVIRONMENT_LIGHTS - 1)));
             }
             let mut surrounding = environment.median_cut(left);
             surrounding.sort_by(|a, b| b.irradiance.element_sum().total_cmp(&a.irradiance.element_sum()));

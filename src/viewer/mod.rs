@@ -90,7 +90,7 @@ impl Shot {
     }
 }
 
-/// Reads `--show`: some of `skin`, `shells`, `fins`, with commas between, or one of `field`, `patches`, `stretch` alone.
+/// Reads what to show: some of `skin`, `shells`, `fins`, with commas between, or one of `field`, `patches`, `stretch` alone.
 ///
 /// # Errors
 /// Names the word that is none of them, or a chart that is not alone.
@@ -112,13 +112,13 @@ pub fn parse_show(text: &str) -> Result<Subject> {
             "fins" => show.fins = true,
             _ if chart(word).is_some() => {
                 return Err(Error::usage("field, patches and stretch are pictures by themselves")
-                    .with_field("--show")
+                    .with_parameter("show")
                     .with_found(text)
                     .with_expected(format!("{word} alone, or some of skin, shells, fins")));
             }
             _ => {
                 return Err(Error::usage("there is no such thing to show")
-                    .with_field("--show")
+                    .with_parameter("show")
                     .with_found(word)
                     .with_expected("skin, shells, fins, with commas between; or one of field, patches, stretch"));
             }
@@ -145,15 +145,15 @@ pub fn screenshot(asset: &Asset, coat: &Coat, options: &Options) -> Result<Shot>
 pub fn turntable(asset: &Asset, coat: &Coat, options: &Options, views: u32) -> Result<Shot> {
     if !(1..=64).contains(&views) {
         return Err(Error::usage("the number of views is out of range")
-            .with_field("--turntable")
+            .with_parameter("turntable")
             .with_found(views)
             .with_expected("1 to 64"));
     }
     let Viewpoint::Orbit(orbit) = options.stage.viewpoint else {
         return Err(Error::usage("a turntable turns by itself")
-            .with_field("--camera")
+            .with_parameter("camera")
             .with_found("a camera")
-            .with_expected("no camera, or `--orbit`"));
+            .with_expected("no camera, or `orbit`"));
     };
     let turned = |i| Orbit { azimuth_deg: orbit.azimuth_deg + 360.0 * f64::from(i) / f64::from(views), ..orbit };
     let viewpoints: Vec<_> = (0..views).map(|i| Viewpoint::Orbit(turned(i))).collect();

@@ -41,7 +41,7 @@ impl Format {
             "usda" => Ok(Self::Usda),
             "hair" => Ok(Self::CyHair),
             _ => Err(Error::usage("the kind of strand file is unknown")
-                .with_field("--export-strands")
+                .with_parameter("export strands")
                 .with_found(path.display())
                 .with_expected("a name that ends in .usda or .hair")),
         }
@@ -91,6 +91,6 @@ fn counted(count: usize, what: &str) -> Result<u32> {
             .with_field(what)
             .with_found(count)
             .with_expected(format!("at most {}", i32::MAX))
-            .with_hint("`--set guard.density_per_cm2=…` grows fewer")
+            .with_hint("`set` guard.density_per_cm2=… grows fewer")
     })
 }

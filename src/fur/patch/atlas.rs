@@ -66,7 +66,7 @@ fn charts_of(mesh: &Mesh, faces: &[Face]) -> Result<Charts> {
     charts(&positions, &mesh.triangles, options).ok_or_else(|| {
         Error::input("xatlas could not cut the mesh into charts")
             .with_found(format!("{} triangles", mesh.triangles.len()))
-            .with_hint("use --parameterisation lapped")
+            .with_hint("use `parameterisation` lapped")
     })
 }
 
@@ -209,8 +209,8 @@ pub fn fit(sets: &mut [Patches], tile_edge_m: f32, texels: u32, padding: u32) ->
         return Ok(square);
     }
     Err(Error::usage("the charts do not fit into the texture")
-        .with_field("--texture-size")
+        .with_parameter("texture size")
         .with_found(format!("{texels}\u{b2} texels for {} charts", all.len()))
         .with_expected("room for each with a texel around it")
-        .with_hint("give more texels, or use --parameterisation lapped"))
+        .with_hint("give more texels, or use `parameterisation` lapped"))
 }

@@ -35,7 +35,7 @@ fn sound_share(mesh: &Mesh, faces: &[Face], set: &[Vec2]) -> f64 {
 
 /// See [`super::parameterise`].
 pub(super) fn parameterise(mesh: &Mesh, direction: &[Vec3], tile_edge_m: f32, set: usize) -> Result<Patches> {
-    const HINT: &str = "use --parameterisation atlas, or another --uv-set";
+    const HINT: &str = "use `parameterisation` atlas, or another `uv set`";
     let Some(own) = mesh.uv_sets.get(set) else {
         return Err(Error::input("the mesh lacks the UV set asked for")
             .with_field(format!("TEXCOORD_{set}"))

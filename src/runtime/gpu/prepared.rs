@@ -53,7 +53,7 @@ impl<'a> Prepared<'a> {
     pub fn draw(&mut self, view: &Frame, show: Show) -> Result<Drawn> {
         if view.lights.len() > MAX_LIGHTS {
             return Err(Error::usage("too many lights")
-                .with_field("light")
+                .with_parameter("light")
                 .with_found(view.lights.len())
                 .with_expected(format!("at most {MAX_LIGHTS}")));
         }
