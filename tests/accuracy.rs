@@ -5,11 +5,11 @@ use furrier::coat::hair::{TileHair, leaning};
 use furrier::coat::judge::{Effort, Row, coverage_table};
 use furrier::coat::shells::ShellParameters;
 use furrier::coat::tile::{TileRecipe, bake};
+use furrier::data::shell::{Incidence, Stack};
 use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::groom::{Colour, Guard, Shape, Undercoat};
 use furrier::fur::grow;
 use furrier::math::{Mat3, Vec2, Vec3};
-use furrier::runtime::cpu::{Stack, View};
 use furrier::volume::medium::Medium;
 
 const EFFORT: Effort = Effort { pixels: 128, supersampling: 2 };
@@ -150,10 +150,10 @@ fn worst_tangent_deg(hair: &TileHair, lean_deg: f32, fault: Mat3) -> f32 {
     let stack = Stack::new(&tile);
     let truth = strand_directions(hair, 15);
     let most = truth.iter().map(|t| t.length()).fold(0.0, f32::max);
-    let view = View::new(Vec3::NEG_Z, Mat3::IDENTITY, 1.0);
+    let seen = Incidence::new(Vec3::NEG_Z, Mat3::IDENTITY, 1.0);
     let worn = leaning(lean_deg);
     let angle = |(slab, truth): (usize, &Vec3)| {
-        let mean = worn * (fault * stack.fetch(slab + 1, Vec2::ZERO, &view).tangent);
+        let mean = worn * (fault * stack.fetch(slab + 1, Vec2::ZERO, &seen).medium.tangent);
         mean.angle_between(worn * *truth).to_degrees()
     };
     // The last slab holds a few tips; eight bits cannot tell their direction.
@@ -178,12 +178,12 @@ fn mean_tangents_are_those_of_the_strands() {
 fn layer_shift(tile: &furrier::data::coat::Tile, layer: usize, worn: Mat3) -> (i32, f32) {
     let size = tile.shells.size as i32;
     let stack = Stack::new(tile);
-    let view = View::new(Vec3::NEG_Z, worn, 1.0 / size as f32);
+    let seen = Incidence::new(Vec3::NEG_Z, worn, 1.0 / size as f32);
     let picture = |layer: usize| -> Vec<f32> {
         let texel = |i: i32| {
             let uv = Vec2::new((i % size) as f32 + 0.5, (i / size) as f32 + 0.5) / size as f32;
-            let t = stack.fetch(layer, uv, &view);
-            t.ends + t.extinction * 1e-4
+            let t = stack.fetch(layer, uv, &seen);
+            t.ends + t.medium.extinction * 1e-4
         };
         (0..size * size).map(texel).collect()
     };
@@ -220,9 +220,9 @@ fn stack_coverage(tile: &furrier::data::coat::Tile, theta_deg: f32, worn: Mat3, 
     for i in 0..32 * 32 {
         let azimuth = (i % 8) as f32 * std::f32::consts::FRAC_PI_4;
         let direction = Vec3::new(sin * azimuth.cos(), sin * azimuth.sin(), -cos);
-        let view = View::new(direction, worn, pixel);
+        let seen = Incidence::new(direction, worn, pixel);
         let uv = Vec2::new((i % 32) as f32 + 0.5, (i / 32) as f32 + 0.5) / 32.0;
-        let depth = density * stack.gain(&view) * stack.optical_depth(uv, &view);
+        let depth = density * stack.gain(&seen) * stack.optical_depth(uv, &seen);
         sum += 1.0 - (-depth).exp();
     }
     sum / 1024.0

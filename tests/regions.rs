@@ -4,10 +4,10 @@ use furrier::asset::{self, Fallback};
 use furrier::bake::units::Units;
 use furrier::bake::{Method, Request, bake};
 use furrier::data::coat::{Coat, CoatPrimitive};
+use furrier::data::shell::{Incidence, Stack, slab_optical_depth};
 use furrier::gpu::{Choice, Gpu};
 use furrier::math::{Mat4, Vec3, Vec4};
 use furrier::preset::Preset;
-use furrier::runtime::cpu::{self, Stack};
 use furrier::runtime::gpu::Renderer;
 use furrier::runtime::{Frame, Show};
 use furrier::viewer::stage;
@@ -145,34 +145,14 @@ fn coverage_rises_from_one_tile_to_the_other() {
     assert!(!rises(&seen), "half a passage passes");
 }
 
-#[test]
-fn halfway_the_optical_depth_lies_between_the_tiles() {
-    let folder = tempfile::tempdir().unwrap();
-    let (_, coat) = baked(folder.path());
-    let stacks: Vec<_> = coat.tiles.iter().map(Stack::new).collect();
-    let view = cpu::View::new(Vec3::new(0.6, 0.0, -0.8), furrier::math::Mat3::IDENTITY, 1.0 / 64.0);
-    for i in 0..64 {
-        let uv = furrier::math::Vec2::new((i % 8) as f32, (i / 8) as f32) / 8.0;
-        let [a, b] = [0, 1].map(|tile| stacks[tile].gain(&view) * stacks[tile].optical_depth(uv, &view));
-        let mut last = a;
-        for step in 0..=8 {
-            let depth = cpu::blended(a, b, step as f32 / 8.0);
-            assert!((depth - last) * (b - a) >= 0.0, "not monotone");
-            last = depth;
-        }
-        assert!((cpu::blended(a, b, 0.5) - 0.5 * (a + b)).abs() < 1e-6 * (a + b));
-        assert_eq!((cpu::blended(a, b, 0.0), cpu::blended(a, b, 1.0)), (a, b));
-    }
-}
-
 /// How much of what is seen is the second tile's hair: what mixed hair would show less what slabs drawn over one another do, mean
 /// and root mean square over a tile. `over` says of each slab whether the second tile is drawn over the first.
 fn colour_error(stacks: &[Stack<'_>], layers: usize, theta_deg: f32, w: f32, over: impl Fn(usize) -> bool) -> [f32; 2] {
     let (sin, cos) = theta_deg.to_radians().sin_cos();
-    let view = cpu::View::new(Vec3::new(sin, 0.0, -cos), furrier::math::Mat3::IDENTITY, 1.0 / 64.0);
+    let seen = Incidence::new(Vec3::new(sin, 0.0, -cos), furrier::math::Mat3::IDENTITY, 1.0 / 64.0);
     let depth = |tile: usize, layer: usize, uv| {
         let stack: &Stack<'_> = &stacks[tile];
-        stack.gain(&view) * cpu::slab_optical_depth(&stack.fetch(layer, uv, &view), &view, stack.slab_m())
+        stack.gain(&seen) * slab_optical_depth(&stack.fetch(layer, uv, &seen), &seen, stack.slab_m())
     };
     let errors: Vec<f32> = (0..1024)
         .map(|i| {

@@ -2,9 +2,9 @@
 
 use crate::coats;
 use furrier::data::coat::Tile;
+use furrier::data::shell::{Incidence, Stack};
 use furrier::gpu::{Choice, Gpu};
 use furrier::math::{Mat2, Mat3, Mat4, Vec2, Vec3, Vec4};
-use furrier::runtime::cpu::{self, Stack};
 use furrier::runtime::gpu::Renderer;
 use furrier::runtime::{Frame, Picture, Show};
 
@@ -39,13 +39,12 @@ fn on_cpu(tile: &Tile, direction: Vec3, lean_rad: f32, texture: Mat2) -> Vec<f32
     let stack = Stack::new(tile);
     let offset = Vec3::new(lean_rad.sin(), 0.0, lean_rad.cos());
     let pixel = 1.0 / PIXELS as f32;
-    let plain = cpu::View::new(direction, Mat3::from_cols(Vec3::X, Vec3::Y, offset), pixel);
-    let view = cpu::View { texture_from_tile: texture, ..plain };
+    let seen = Incidence::new(direction, Mat3::from_cols(Vec3::X, Vec3::Y, offset), pixel).on_texture(texture);
     let at = |i: u32| {
         let (x, y) = (i % PIXELS, PIXELS - 1 - i / PIXELS);
         texture * (Vec2::new(x as f32 + 0.5, y as f32 + 0.5) * pixel - 0.5)
     };
-    (0..PIXELS * PIXELS).map(|i| stack.coverage(at(i), &view)).collect()
+    (0..PIXELS * PIXELS).map(|i| stack.coverage(at(i), &seen)).collect()
 }
 
 fn on_gpu(renderer: &Renderer<'_>, tiles: &[Tile], direction: Vec3, lean_rad: f32, texture: Mat2) -> Picture {

@@ -2,8 +2,9 @@
 
 use crate::data::mesh::Mesh;
 use crate::data::patches::Patches;
-use crate::math::{Mat2, Mat3, Vec3};
-use crate::runtime::cpu::View;
+use crate::data::shell::Incidence;
+use crate::data::shell::guards::{LEAST_AXIS, MOST_SPREAD};
+use crate::math::{Mat2, Mat3, Vec2, Vec3};
 
 /// The tile's x axis at each skin vertex, unit tangent vectors in world axes: the comb, and where it is zero (hair
 /// upright all around) the mean of +u over the triangles there, whatever their patch. The same for all vertices at one
@@ -45,16 +46,21 @@ pub struct Stand {
 impl Stand {
     /// How it is seen along the unit direction `ray`, which points in, through a pixel of `pixel` tile edges: the law as
     /// shaders have it.
-    pub fn view(&self, ray: Vec3, pixel: f32) -> View {
-        let Self { normal, up, texture, spread, .. } = *self;
-        let x = self.axis.reject_from_normalized(normal).normalize_or(texture[0].normalize_or_zero());
-        let rise = up.dot(normal);
-        let up = up + normal * (rise.max(1e-3) - rise);
-        let hair = Mat3::from_cols(x * spread, normal.cross(x) * spread, up);
-        let texture = Mat3::from_cols(texture[0], texture[1], up);
-        let sound = texture.determinant().abs() > 1e-9;
-        let map = if sound { texture.inverse() * hair } else { Mat3::IDENTITY };
-        let texture_from_tile = Mat2::from_cols(map.x_axis.truncate(), map.y_axis.truncate());
-        View { texture_from_tile, ..View::new(ray, hair, pixel) }
+    pub fn seen(&self, ray: Vec3, pixel: f32) -> Incidence {
+        let Self { normal, up, spread, .. } = *self;
+        let [u, v] = self.texture.map(|axis| axis.reject_from_normalized(normal));
+        let along = self.axis.reject_from_normalized(normal);
+        let told = along.length() > LEAST_AXIS * self.axis.length();
+        let x = if told { along } else { u }.normalize_or_zero();
+        let y = normal.cross(x);
+        let spread = spread.clamp(1.0 / MOST_SPREAD, MOST_SPREAD);
+        let seen = Incidence::new(ray, Mat3::from_cols(x * spread, y * spread, up), pixel);
+        // The axes as sums of u and v: all four lie along the skin.
+        let area = normal.dot(u.cross(v));
+        let in_texture = |axis: Vec3| Vec2::new(axis.cross(v).dot(normal), u.cross(axis).dot(normal)) * (spread / area);
+        if area.abs() > FLAT { seen.on_texture(Mat2::from_cols(in_texture(x), in_texture(y))) } else { seen }
     }
 }
+
+/// A texture that a place of the skin has less of than this share of it has no axes there.
+const FLAT: f32 = 1e-9;

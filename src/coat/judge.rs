@@ -6,8 +6,8 @@ use crate::cast::Caster;
 use crate::cast::Rays;
 use crate::data::coat::Tile;
 use crate::data::ray::DepthRange;
+use crate::data::shell::{Incidence, Stack, slab_optical_depth};
 use crate::math::{Mat3, Vec2, Vec3};
-use crate::runtime::cpu::{Stack, View, slab_optical_depth};
 use serde::Serialize;
 
 /// Angles between ray and normal that are judged, degrees.
@@ -69,12 +69,12 @@ fn row(
         let rays = Rays::Tile { edge_m, top_m, direction, size: [n, n], supersampling: effort.supersampling };
         let film = caster.render(&rays, DepthRange { near_m: 0.0, far_m: top_m / -direction.z });
         truth.extend(film.alpha);
-        let view = View::new(direction, skin_from_tile, pixel);
+        let seen = Incidence::new(direction, skin_from_tile, pixel);
         let shift = direction.truncate() / -direction.z * top_m / tile.edge_m;
         for i in 0..n * n {
             let uv = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) * pixel + shift;
-            ours.push(stack.coverage(uv, &view));
-            constant.push(constant_coverage(stack, tile, uv, &view));
+            ours.push(stack.coverage(uv, &seen));
+            constant.push(constant_coverage(stack, tile, uv, &seen, pixel));
         }
     }
     let mean = |values: &[f32]| values.iter().sum::<f32>() / values.len() as f32;
@@ -89,20 +89,16 @@ fn row(
 }
 
 /// The usual shells: every texel's opacity is what it is from straight above, fetched without widening.
-fn constant_coverage(stack: &Stack<'_>, tile: &Tile, uv: Vec2, view: &View) -> f32 {
-    let above = View::new(Vec3::NEG_Z, Mat3::IDENTITY, view.pixel);
-    let gain = stack.gain(&above);
-    let d = view.skin_from_tile.inverse() * view.direction;
-    let slope = Vec2::new(d.x, d.y) / d.z;
+fn constant_coverage(stack: &Stack<'_>, tile: &Tile, uv: Vec2, seen: &Incidence, pixel: f32) -> f32 {
+    let above = Incidence::new(Vec3::NEG_Z, Mat3::IDENTITY, pixel);
     let depth: f32 = (1..tile.shells.layers as usize)
         .map(|layer| {
-            let height_m = (layer as f32 - 0.5) * stack.slab_m();
             // Fetched where the view ray meets the layer, as if seen from above.
-            let below = uv + slope * height_m / tile.edge_m;
-            slab_optical_depth(&stack.fetch(layer, below, &above), &above, stack.slab_m())
+            let texel = stack.fetch_middle(layer, stack.middle(layer, uv, seen), &above);
+            slab_optical_depth(&texel, &above, stack.slab_m())
         })
         .sum();
-    -libm::expm1f(-gain * depth)
+    -libm::expm1f(-stack.gain(&above) * depth)
 }
 
 /// Root mean square difference of two stacks of n × n pictures, each averaged over 4 × 4 pixels first.

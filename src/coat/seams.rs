@@ -4,11 +4,11 @@ use super::axes::Stand;
 use crate::data::coat::Tile;
 use crate::data::mesh::Mesh;
 use crate::data::patches::{Patches, Seams};
+use crate::data::shell::{Incidence, Stack, slab_optical_depth};
 use crate::fur::patch::{PIXEL, Place, compare_seams};
 
 pub use crate::fur::patch::WINDOWS;
-use crate::math::Vec3;
-use crate::runtime::cpu::{Stack, View};
+use crate::math::{Vec2, Vec3};
 
 /// Angles between ray and normal at which seams are looked at, degrees.
 pub const ANGLES_DEG: [f32; 3] = [0.0, 45.0, 75.0];
@@ -58,15 +58,35 @@ fn compare<const N: usize>(
     let size = tile.shells.size;
     compare_seams(mesh, sets, tile.edge_m, size, windows, |_, place| {
         let views = ANGLES_DEG.map(|theta| seen_at(place, offset, axis, theta, PIXEL as f32 / size as f32));
-        place.uv.iter().map(|&uv| views.map(|view| stack.brightness(uv, &view, 1.0))).collect()
+        place.uv.iter().map(|&uv| views.map(|seen| brightness(&stack, tile, uv, &seen))).collect()
     })
 }
 
-fn seen_at(place: &Place, offset: &[Vec3], axis: &[Vec3], theta_deg: f32, pixel: f32) -> View {
+fn seen_at(place: &Place, offset: &[Vec3], axis: &[Vec3], theta_deg: f32, pixel: f32) -> Incidence {
     let (sin, cos) = libm::sincosf(theta_deg.to_radians());
     let ray = -(place.normal * cos + place.azimuth * sin);
     let ([a, b], along) = place.edge;
     let between = |field: &[Vec3]| field[a as usize].lerp(field[b as usize], along);
     let (axis, up) = (between(axis), between(offset));
-    Stand { normal: place.normal, axis, up, texture: place.axes, spread: 1.0 }.view(ray, pixel)
+    Stand { normal: place.normal, axis, up, texture: place.axes, spread: 1.0 }.seen(ray, pixel)
+}
+
+/// What lies behind hair that lets less than this through is not looked at.
+const HIDDEN: f32 = 1e-3;
+
+/// Luminance that leaves a tile's stack towards the eye along the view ray through `uv`, under a light of radiosity 1 above:
+/// slabs from the outside in, each by its opacity, then the skin.
+fn brightness(stack: &Stack<'_>, tile: &Tile, uv: Vec2, seen: &Incidence) -> f32 {
+    let gain = stack.gain(seen);
+    let (mut through, mut light) = (1.0, 0.0);
+    for layer in (1..tile.shells.layers as usize).rev() {
+        if through < HIDDEN {
+            return light;
+        }
+        let texel = stack.fetch_nearest(layer, stack.middle(layer, uv, seen), seen);
+        let clear = libm::expf(-gain * slab_optical_depth(&texel, seen, stack.slab_m()));
+        light += through * (1.0 - clear) * texel.brightness;
+        through *= clear;
+    }
+    light + through * stack.skin(uv).brightness
 }

@@ -9,6 +9,7 @@ pub mod light;
 pub mod mesh;
 pub mod patches;
 pub mod ray;
+pub mod shell;
 pub mod strands;
 pub mod subject;
 pub mod topology;

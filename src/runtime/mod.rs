@@ -1,10 +1,9 @@
-//! Floor 4: draws a coat as a game would, after skinning and morphing: skin, fins, shells inner to outer.
+//! Floor 5: draws a coat as a game would, after skinning and morphing: skin, fins, shells inner to outer.
 //!
 //! [`DrawList`] says what to draw, [`Frame`] from where and in which light. A [`gpu::Renderer`] holds what
-//! all poses share, [`gpu::Renderer::prepare`] uploads one, [`gpu::Prepared::draw`] draws it. [`cpu`] is the law of
-//! opacity at one pixel, in plain steps.
+//! all poses share, [`gpu::Renderer::prepare`] uploads one, [`gpu::Prepared::draw`] draws it. The law of opacity at one pixel, in
+//! plain steps, is [`crate::data::shell`].
 
-pub mod cpu;
 mod draw_list;
 pub mod gpu;
 

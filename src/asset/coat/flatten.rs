@@ -1,9 +1,10 @@
 //! Shells with one opacity for all views: what plain glTF can hold.
 
-use crate::data::coat::{GAIN_ANGLES_DEG, ShellStack};
+use crate::data::coat::ShellStack;
 use crate::data::image::{Image8, linear_from_srgb, srgb_from_linear, unorm8};
+use crate::data::shell::{HairMedium, end_depth_of_byte, gain_at, unorm};
 use crate::error::{Error, Kind, Result};
-use crate::math::{Vec3, Vec4};
+use crate::math::Vec3;
 
 /// The view, from the skin's normal, whose opacity is kept: about the mean over what faces a viewer.
 const VIEW_DEG: f32 = 30.0;
@@ -16,7 +17,7 @@ pub fn shells(stack: &ShellStack, height_m: f32, count: u32) -> Vec<Image8> {
     let slabs = stack.layers - 1;
     let count = count.clamp(1, slabs);
     let thickness_m = height_m / slabs as f32;
-    let gain = gain(stack);
+    let gain = gain_at(&stack.gains[0], VIEW_DEG);
     let of_shell = |shell: u32| {
         let (first, last) = (shell * slabs / count + 1, (shell + 1) * slabs / count);
         let mut image = Image8::new(stack.size, stack.size, 4);
@@ -40,7 +41,7 @@ fn composite(
     let (mut colour, mut plain, mut clear, mut n) = (Vec3::ZERO, Vec3::ZERO, 1.0, 0.0);
     for slab in slabs {
         let albedo = &stack.albedo[0][slab as usize].pixels[4 * texel..][..3];
-        let albedo = Vec3::from_array([0, 1, 2].map(|i| linear_from_srgb(f32::from(albedo[i]) / 255.0)));
+        let albedo = Vec3::from_array([0, 1, 2].map(|i| linear_from_srgb(unorm(albedo[i]))));
         let alpha = opacity(stack, slab as usize, texel, gain, thickness_m);
         colour += clear * alpha * albedo;
         clear *= 1.0 - alpha;
@@ -55,32 +56,19 @@ fn composite(
 
 /// A slab's opacity by the coat's law at [`VIEW_DEG`], its mean over azimuths.
 fn opacity(stack: &ShellStack, slab: usize, texel: usize, gain: f32, thickness_m: f32) -> f32 {
-    let medium = &stack.medium[0][slab].pixels[4 * texel..][..4];
-    let signed = |byte: u8| (f32::from(byte) - 128.0) / 127.0;
-    let medium = Vec4::new(f32::from(medium[0]) / 255.0, signed(medium[1]), signed(medium[2]), signed(medium[3]))
-        * stack.extinction_scales_per_m[0];
-    // Byte 255 stands for an end that hides all; ½ a step less keeps the logarithm finite.
-    let kappa = -libm::logf(1.0 - f32::from(stack.ends[0][slab].pixels[texel]).min(254.5) / 255.0);
+    let bytes = &stack.medium[0][slab].pixels[4 * texel..][..4];
+    let medium = HairMedium::decode(bytes, stack.extinction_scales_per_m[0]);
+    let kappa = end_depth_of_byte(stack.ends[0][slab].pixels[texel]);
     let angle = VIEW_DEG.to_radians();
     let clear: f32 = (0..AZIMUTHS)
         .map(|i| {
             let azimuth = std::f32::consts::TAU * i as f32 / AZIMUTHS as f32;
             let flat = libm::sinf(angle);
             let ray = Vec3::new(flat * libm::cosf(azimuth), flat * libm::sinf(azimuth), libm::cosf(angle));
-            let along = ray.dot(Vec3::new(medium.y, medium.z, medium.w));
-            let lateral = (medium.x * medium.x - along * along).max(0.0).sqrt();
-            libm::expf(-gain * (lateral * thickness_m / ray.z + kappa))
+            libm::expf(-gain * (medium.upright(ray) * thickness_m / ray.z + kappa))
         })
         .sum();
     1.0 - clear / AZIMUTHS as f32
-}
-
-/// The finest mip's gain at [`VIEW_DEG`].
-fn gain(stack: &ShellStack) -> f32 {
-    let after = GAIN_ANGLES_DEG.iter().position(|&angle| angle >= VIEW_DEG).unwrap_or(1).max(1);
-    let (low, high) = (GAIN_ANGLES_DEG[after - 1], GAIN_ANGLES_DEG[after]);
-    let (a, b) = (stack.gains[0][after - 1], stack.gains[0][after]);
-    a + (b - a) * (VIEW_DEG - low) / (high - low)
 }
 
 /// An RGBA image as PNG.

@@ -14,13 +14,13 @@ use crate::data::mesh::Mesh;
 use crate::data::patches::Patches;
 use crate::data::ray::DepthRange;
 use crate::data::ray::Ray;
+use crate::data::shell::{Incidence, Stack, slab_optical_depth};
 use crate::data::strands::Strands;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::grow;
 use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::hash::{combine, unit_f32};
 use crate::math::{Mat3, Vec2, Vec3, orthonormal_basis, sampling};
-use crate::runtime::cpu::{Stack, View, slab_optical_depth};
 use crate::volume::march::content::{Content, Resolution};
 use crate::volume::march::volume::Volume;
 use crate::volume::march::{Journey, Start, Stepping};
@@ -267,7 +267,7 @@ impl Judge<'_> {
     fn depths(&self, ray: &Ray, far_m: f32, triangles: &[usize]) -> [f32; 2] {
         let Worn { mesh, fields, patches, tile, .. } = *self.worn;
         let pixel = 1.0 / tile.shells.size as f32;
-        let above = View::new(Vec3::NEG_Z, Mat3::IDENTITY, pixel);
+        let above = Incidence::new(Vec3::NEG_Z, Mat3::IDENTITY, pixel);
         let mut depths = [0.0; 2];
         for &t in triangles {
             let corners = mesh.triangles[t].map(|v| v as usize);
@@ -280,8 +280,8 @@ impl Judge<'_> {
                 let Some(b) = crossing(shell_m, ray, far_m) else { continue };
                 let Some([x, y]) = axes(shell_m, uv.map(|p| p * tile.edge_m)) else { continue };
                 let z = offsets[0] * b.x + offsets[1] * b.y + offsets[2] * b.z;
-                let view = match tile.sampled {
-                    Sampled::Skin => View::new(ray.direction, Mat3::from_cols(x, y, z), pixel),
+                let seen = match tile.sampled {
+                    Sampled::Skin => Incidence::new(ray.direction, Mat3::from_cols(x, y, z), pixel),
                     Sampled::Square => {
                         let around = |of: [Vec3; 3]| of[0] * b.x + of[1] * b.y + of[2] * b.z;
                         let twice_area = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a);
@@ -289,7 +289,7 @@ impl Judge<'_> {
                         let spread = (here.length() / foot.length().max(f32::MIN_POSITIVE)).sqrt();
                         let axis = around(corners.map(|v| fields.direction[v]));
                         let stand = Stand { normal: here.normalize_or_zero(), axis, up: z, texture: [x, y], spread };
-                        stand.view(ray.direction, pixel)
+                        stand.seen(ray.direction, pixel)
                     }
                 };
                 let at: Vec2 = uv[0] * b.x + uv[1] * b.y + uv[2] * b.z;
@@ -300,9 +300,9 @@ impl Judge<'_> {
                     }
                 };
                 let slab_m = self.stack.slab_m();
-                let law = slab_optical_depth(&self.stack.fetch_middle(layer, at, &view), &view, slab_m);
+                let law = slab_optical_depth(&self.stack.fetch_middle(layer, at, &seen), &seen, slab_m);
                 let plain = slab_optical_depth(&self.stack.fetch_middle(layer, at, &above), &above, slab_m);
-                depths[0] += density * self.stack.gain(&view) * law;
+                depths[0] += density * self.stack.gain(&seen) * law;
                 depths[1] += density * self.stack.gain(&above) * plain;
             }
         }

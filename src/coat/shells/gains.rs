@@ -5,8 +5,8 @@ use crate::cast::Geometry;
 use crate::cast::Rays;
 use crate::data::coat::{GAIN_ANGLES_DEG, Tile};
 use crate::data::ray::DepthRange;
+use crate::data::shell::{Incidence, Stack};
 use crate::math::{Mat3, Vec2, Vec3};
-use crate::runtime::cpu::{Stack, View};
 use rayon::prelude::*;
 
 /// Azimuths at which truth and stack are compared.
@@ -83,14 +83,14 @@ pub fn fit(tile: &Tile, truth: &[f64; 9], skin_from_tile: Mat3) -> Vec<[f32; 9]>
 /// Ungained optical depths seen through pixels as large as a texel of the mip with `size` texels.
 fn optical_depths(stack: &Stack<'_>, size: u32, theta_deg: f32, skin_from_tile: Mat3) -> Vec<f32> {
     let n = along_edge(theta_deg, (size as usize).clamp(8, SPOTS));
-    let views: Vec<View> = directions(theta_deg)
-        .map(|in_tile| View::new((skin_from_tile * in_tile).normalize(), skin_from_tile, 1.0 / size.max(1) as f32))
+    let seen: Vec<Incidence> = directions(theta_deg)
+        .map(|in_tile| Incidence::new((skin_from_tile * in_tile).normalize(), skin_from_tile, 1.0 / size.max(1) as f32))
         .collect();
     (0..n * n)
         .into_par_iter()
         .flat_map_iter(|i| {
             let uv = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32;
-            views.iter().map(move |view| stack.optical_depth(uv, view)).collect::<Vec<_>>()
+            seen.iter().map(move |seen| stack.optical_depth(uv, seen)).collect::<Vec<_>>()
         })
         .collect()
 }
