@@ -93,8 +93,8 @@ fn structs_lie_as_in_rust() {
     for (module, name, rust) in [
         (&shell, "Light", light()),
         (&shell, "View", in_rust!(ViewUniform { clip_from_world, eye, ambient, light_count, lights })),
-        (&shell, "Tile", in_rust!(TileUniform { edge_m, height_m, size, layers, mips, tinted })),
-        (&shell, "Mip", in_rust!(Mip { gains, inverse_scale_m })),
+        (&shell, "Tile", in_rust!(TileUniform { edge_m, height_m, size, layers, mips, tinted, medium_unit_per_m })),
+        (&shell, "Mip", in_rust!(Mip { gains })),
         (&shell, "CoatVertex", in_rust!(CoatVertex { position_m, u, offset_m, v, normal, axis, tint })),
         (&fin, "FinEdge", in_rust!(FinInstance { ends, u, thickness })),
     ] {

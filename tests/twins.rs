@@ -1,9 +1,11 @@
 //! The graphics device against the same law on the CPU, pixel by pixel.
 
 use crate::coats;
-use furrier::data::coat::Tile;
+use furrier::data::coat::{Sampled, Tile};
+use furrier::data::shell::guards::FADE_BELOW;
 use furrier::data::shell::{Incidence, Stack};
 use furrier::gpu::{Choice, Gpu};
+use furrier::math::hash::Stream;
 use furrier::math::{Mat2, Mat3, Mat4, Vec2, Vec3, Vec4};
 use furrier::runtime::gpu::Renderer;
 use furrier::runtime::{Frame, Picture, Show};
@@ -11,49 +13,94 @@ use furrier::runtime::{Frame, Picture, Show};
 const PIXELS: u32 = 128;
 const SHELLS: Show = Show { skin: false, shells: true, fins: false };
 
-/// Parallel rays along `direction` through the texels of one tile on the plane z = 0, one pixel each.
-fn oblique(direction: Vec3, edge_m: f32) -> Frame {
-    let slope = direction / direction.z;
-    let scale = 2.0 / edge_m;
-    let clip = Mat4::from_cols(
-        Vec4::new(scale, 0.0, 0.0, 0.0),
-        Vec4::new(0.0, scale, 0.0, 0.0),
-        Vec4::new(-slope.x * scale, -slope.y * scale, -1.0, 0.0),
-        Vec4::new(0.0, 0.0, 0.5, 1.0),
-    );
-    Frame {
-        clip_from_world: clip,
-        eye: Vec4::from((-direction, 0.0)),
-        size: [PIXELS; 2],
-        lights: vec![],
-        ambient: Vec3::ZERO,
+/// Parallel rays through the plane z = 0, and how hair stands there.
+#[derive(Clone, Copy)]
+struct Look {
+    /// Of the rays.
+    theta_deg: f32,
+    phi_deg: f32,
+    lean_deg: f32,
+    /// Of hair, over the tile's.
+    length: f32,
+    /// Tiles along the picture's edge.
+    tiles: f32,
+    texture: Mat2,
+    /// Density factor.
+    density: f32,
+}
+
+impl Look {
+    fn new(theta_deg: f32, phi_deg: f32, lean_deg: f32) -> Self {
+        Self { theta_deg, phi_deg, lean_deg, length: 1.0, tiles: 1.0, texture: Mat2::IDENTITY, density: 1.0 }
+    }
+
+    fn direction(&self) -> Vec3 {
+        let (sin, cos) = self.theta_deg.to_radians().sin_cos();
+        let (sin_phi, cos_phi) = self.phi_deg.to_radians().sin_cos();
+        Vec3::new(sin * cos_phi, sin * sin_phi, -cos)
+    }
+
+    /// Root to the top of the stack, over its height.
+    fn up(&self) -> Vec3 {
+        let (sin, cos) = self.lean_deg.to_radians().sin_cos();
+        Vec3::new(sin, 0.0, cos) * self.length
+    }
+
+    /// One pixel for each of [`PIXELS`] parts of the picture's edge.
+    fn frame(&self, edge_m: f32) -> Frame {
+        let direction = self.direction();
+        let slope = direction / direction.z;
+        let scale = 2.0 / (edge_m * self.tiles);
+        let clip = Mat4::from_cols(
+            Vec4::new(scale, 0.0, 0.0, 0.0),
+            Vec4::new(0.0, scale, 0.0, 0.0),
+            Vec4::new(-slope.x * scale, -slope.y * scale, -1.0, 0.0),
+            Vec4::new(0.0, 0.0, 0.5, 1.0),
+        );
+        Frame {
+            clip_from_world: clip,
+            eye: Vec4::from((-direction, 0.0)),
+            size: [PIXELS; 2],
+            lights: vec![],
+            ambient: Vec3::ZERO,
+        }
     }
 }
 
-fn direction(theta_deg: f32, phi_deg: f32) -> Vec3 {
-    let ((sin, cos), (sin_phi, cos_phi)) = (theta_deg.to_radians().sin_cos(), phi_deg.to_radians().sin_cos());
-    Vec3::new(sin * cos_phi, sin * sin_phi, -cos)
-}
-
-fn on_cpu(tile: &Tile, direction: Vec3, lean_rad: f32, texture: Mat2) -> Vec<f32> {
+fn on_cpu(tile: &Tile, look: &Look) -> Vec<f32> {
     let stack = Stack::new(tile);
-    let offset = Vec3::new(lean_rad.sin(), 0.0, lean_rad.cos());
-    let pixel = 1.0 / PIXELS as f32;
-    let seen = Incidence::new(direction, Mat3::from_cols(Vec3::X, Vec3::Y, offset), pixel).on_texture(texture);
+    let pixel = look.tiles / PIXELS as f32;
+    let seen = match tile.sampled {
+        Sampled::Square => {
+            let map = Mat3::from_cols(Vec3::X, Vec3::Y, look.up());
+            Incidence::new(look.direction(), map, pixel).on_texture(look.texture)
+        }
+        // What one unit of the texture is on the plane.
+        Sampled::Skin => {
+            let axes = look.texture.inverse();
+            let map = Mat3::from_cols(axes.x_axis.extend(0.0), axes.y_axis.extend(0.0), look.up());
+            Incidence::new(look.direction(), map, pixel)
+        }
+    };
     let at = |i: u32| {
         let (x, y) = (i % PIXELS, PIXELS - 1 - i / PIXELS);
-        texture * (Vec2::new(x as f32 + 0.5, y as f32 + 0.5) * pixel - 0.5)
+        look.texture * (Vec2::new(x as f32 + 0.5, y as f32 + 0.5) * pixel - 0.5 * look.tiles)
     };
-    (0..PIXELS * PIXELS).map(|i| stack.coverage(at(i), &seen)).collect()
+    let t = (look.length / FADE_BELOW).min(1.0);
+    let present = look.density * t * t * (3.0 - 2.0 * t);
+    let depth = |i: u32| present * stack.gain(&seen) * stack.optical_depth(at(i), &seen);
+    (0..PIXELS * PIXELS).map(|i| -f32::exp_m1(-depth(i))).collect()
 }
 
-fn on_gpu(renderer: &Renderer<'_>, tiles: &[Tile], direction: Vec3, lean_rad: f32, texture: Mat2) -> Picture {
+fn on_gpu(renderer: &Renderer<'_>, tiles: &[Tile], look: &Look) -> Picture {
     // Large enough that slanting rays do not pass beside it.
-    let mut plane = coats::plane(tiles[0].edge_m * 30.0, 60, lean_rad, &tiles[0]);
-    plane.uv.iter_mut().for_each(|uv| *uv = texture * *uv);
+    let mut plane = coats::plane(tiles[0].edge_m * 40.0, 60, 0.0, &tiles[0]);
+    plane.uv.iter_mut().for_each(|uv| *uv = look.texture * *uv);
+    plane.offsets_m.iter_mut().for_each(|offset| *offset = look.up() * tiles[0].height_m);
+    plane.tint.iter_mut().for_each(|tint| tint.w = look.density);
     let mut scene = plane.scene(tiles);
     scene.furs[0].axes = vec![Vec3::X; plane.uv.len()];
-    renderer.prepare(&scene).unwrap().draw(&oblique(direction, tiles[0].edge_m), SHELLS).unwrap().picture
+    renderer.prepare(&scene).unwrap().draw(&look.frame(tiles[0].edge_m), SHELLS).unwrap().picture
 }
 
 /// Mean and root mean square difference.
@@ -68,37 +115,88 @@ pub fn alike((mean, rms): (f32, f32)) -> bool {
     mean.abs() < 0.01 && rms < 0.03
 }
 
+fn coverage(of: &[f32]) -> f32 {
+    of.iter().sum::<f32>() / of.len() as f32
+}
+
+/// Holds both to each other at every look.
+fn hold(tile: Tile, looks: &[Look]) {
+    let gpu = Gpu::open(&Choice::Auto).unwrap();
+    let tiles = [tile];
+    let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
+    for look in looks {
+        let cpu = on_cpu(&tiles[0], look);
+        let (mean, rms) = difference(&cpu, &on_gpu(&renderer, &tiles, look));
+        let Look { theta_deg, lean_deg, length, tiles, .. } = look;
+        let said = format!("{theta_deg}°, lean {lean_deg}°, length {length}, {tiles} tiles");
+        println!("{said}: coverage {:.3}, mean {mean:+.4}, rms {rms:.4}", coverage(&cpu));
+        assert!(alike((mean, rms)), "coverage at {said}: {mean} in the mean, {rms} by pixel");
+    }
+}
+
+fn tile() -> Tile {
+    coats::tile(&coats::fox()[..1], 0.008, 16, PIXELS, 3)
+}
+
+const ANGLES: [(f32, f32); 5] = [(0.0, 0.0), (20.0, 70.0), (40.0, 160.0), (60.0, 250.0), (75.0, 340.0)];
+
 #[test]
 fn the_law_is_the_same_on_both() {
+    let looks = [0.0, 30.0].map(|lean| ANGLES.map(|(theta, phi)| Look::new(theta, phi, lean)));
+    hold(tile(), looks.as_flattened());
+}
+
+/// Between mips, each of which has a scale of its own, and with gains that differ from angle to angle and from mip to mip.
+#[test]
+fn the_law_is_the_same_between_mips() {
+    let mut tile = tile();
+    let mut stream = Stream::new(5);
+    tile.shells.gains.iter_mut().flatten().for_each(|gain| *gain = 0.6 + 0.8 * stream.unit());
+    let scales = &tile.shells.extinction_scales_per_m;
+    assert!(scales[0] > 1.5 * scales[2], "scales that differ little tell little: {scales:?}");
+    let looks = [1.4, 2.83, 5.2].map(|tiles| [20.0, 60.0].map(|theta| Look { tiles, ..Look::new(theta, 70.0, 15.0) }));
+    hold(tile, looks.as_flattened());
+}
+
+/// Near the skin's plane: rays that graze it, hair that lies on it, hair that is hardly there or not at all.
+#[test]
+fn the_law_is_the_same_at_its_guards() {
+    let mut looks: Vec<Look> = [80.0, 85.0, 88.0]
+        .map(|lean| Look::new(30.0, 40.0, lean))
+        .into_iter()
+        .chain([Look::new(86.0, 30.0, 0.0)])
+        .collect();
+    looks.push(Look::new(80.0, 190.0, 80.0));
+    looks.extend([0.5, 0.006, 0.0].map(|length| Look { length, density: 0.7, ..Look::new(40.0, 100.0, 20.0) }));
+    hold(tile(), &looks);
+}
+
+/// Texels sampled on the skin: hair stands as its texture lies, tint does not count, nothing repeats.
+#[test]
+fn the_law_is_the_same_on_texels_of_the_skin() {
+    let texture = Mat2::from_angle(0.4) * Mat2::from_diagonal(Vec2::new(0.5, 0.4));
+    let looks = ANGLES.map(|(theta, phi)| Look { texture, ..Look::new(theta, phi, 25.0) });
+    let sampled = Tile { sampled: Sampled::Skin, ..tile() };
+    hold(sampled.clone(), &looks);
     let gpu = Gpu::open(&Choice::Auto).unwrap();
-    let tiles = [coats::tile(&coats::fox()[..1], 0.008, 16, PIXELS, 3)];
+    let tiles = [sampled];
     let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
-    for lean_deg in [0.0_f32, 30.0] {
-        for (theta, phi) in [(0.0, 0.0), (20.0, 70.0), (40.0, 160.0), (60.0, 250.0), (75.0, 340.0)] {
-            let d = direction(theta, phi);
-            let cpu = on_cpu(&tiles[0], d, lean_deg.to_radians(), Mat2::IDENTITY);
-            let picture = on_gpu(&renderer, &tiles, d, lean_deg.to_radians(), Mat2::IDENTITY);
-            let (mean, rms) = difference(&cpu, &picture);
-            let coverage = cpu.iter().sum::<f32>() / cpu.len() as f32;
-            println!("lean {lean_deg} theta {theta}: coverage {coverage:.3}, mean {mean:+.4}, rms {rms:.4}");
-            assert!(alike((mean, rms)), "coverage at {theta}°, lean {lean_deg}°: {mean} in the mean, {rms} by pixel");
-        }
-    }
+    let tinted = Look { density: 0.1, ..looks[2] };
+    assert_eq!(on_gpu(&renderer, &tiles, &tinted).pixels, on_gpu(&renderer, &tiles, &looks[2]).pixels);
 }
 
 /// A texture that lies turned and stretched shows as much hair, which leans and shines as it does elsewhere.
 #[test]
 fn hair_stands_the_same_however_its_texture_lies() {
     let gpu = Gpu::open(&Choice::Auto).unwrap();
-    let tiles = [coats::tile(&coats::fox()[..1], 0.008, 16, PIXELS, 3)];
+    let tiles = [tile()];
     let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
-    let lean_rad = 30.0_f32.to_radians();
     let texture = Mat2::from_angle(0.4) * Mat2::from_diagonal(Vec2::new(1.25, 0.85));
-    let coverage = |of: &[f32]| of.iter().sum::<f32>() / of.len() as f32;
     for (theta, phi) in [(20.0, 70.0), (40.0, 160.0), (60.0, 250.0)] {
-        let d = direction(theta, phi);
-        let (plain, cpu) = (on_cpu(&tiles[0], d, lean_rad, Mat2::IDENTITY), on_cpu(&tiles[0], d, lean_rad, texture));
-        let picture = on_gpu(&renderer, &tiles, d, lean_rad, texture);
+        let look = Look::new(theta, phi, 30.0);
+        let turned = Look { texture, ..look };
+        let (plain, cpu) = (on_cpu(&tiles[0], &look), on_cpu(&tiles[0], &turned));
+        let picture = on_gpu(&renderer, &tiles, &turned);
         let found = difference(&cpu, &picture);
         println!("theta {theta}: {:.3} plain, {:.3} turned, {found:?}", coverage(&plain), coverage(&cpu));
         assert!(alike(found), "coverage at {theta}°: {found:?}");

@@ -1,6 +1,7 @@
 // Counts to places in a list: every pixel gets a span of its own. Which one does not matter, so groups of pixels take theirs
 // as they come.
-#import furrier::camera::{view, totals, FRAGMENTS, OVERFLOW, STARTS, spans, cursors, pixel_count, Span}
+#import furrier::constants::{FRAGMENTS, OVERFLOW, STARTS}
+#import furrier::camera::{view, totals, spans, cursors, pixel_count, Span}
 
 // Whether these are fragments, else starts.
 override OF_FRAGMENTS: bool = false;

@@ -1,13 +1,12 @@
 // Guard hair, undercoat and skin of every pixel into one colour, front to back (Andersen et al. 2016 §3.3, docs/steps/blend.md).
+#import furrier::constants::{LOOKS, MOST_BEND}
 #import furrier::scene::{scene, triangles, vertices, strands, point_of, unit_or}
 #import furrier::camera::{view, pixel_count, pixel_of, direction_through, ray_through, camera_from_world, flat_of, meet,
     skin_triangle, heads}
-#import furrier::guard::{LOOKS, guard_ramp, opacity_at, along_hair}
+#import furrier::guard::{guard_ramp, opacity_at, along_hair}
 #import furrier::fragments::{Fragment, read_from, next_fragment}
-#import furrier::stretch::{Stretch, unpack_albedo, unpack_tangent}
+#import furrier::stretch::{NO_STRETCH, Stretch, unpack_albedo, unpack_tangent}
 #import furrier::skin_look::skin_look
-
-const NO_STRETCH: u32 = 0xffffffffu;
 
 // Equation (4) in place of virtual fragments.
 override SIMPLIFIED: bool = false;
@@ -29,9 +28,6 @@ struct Front {
     normal: vec3<f32>,
     undercoat: f32,
 }
-
-// A light that ends between two looks bends their curve no more than this, lest it swings over.
-const MOST_BEND: f32 = 3.0;
 
 // Logarithm of the opaque hair's radiance: shadow, and radiance with it, goes exponentially from look to look.
 fn log_look(index: u32) -> vec3<f32> {

@@ -1,5 +1,5 @@
 // Fills the stored density: one thread per column of sub-elements.
-#import furrier::scene::{scene, triangles, NOTHING}
+#import furrier::scene::{scene, triangles}
 #import furrier::prism::subelement_centre
 #import furrier::undercoat::{column_over, column_crowding, code_value}
 #import furrier::blocks::{blocks, write_byte, owner_of}

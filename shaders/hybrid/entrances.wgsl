@@ -1,6 +1,7 @@
 // Where pixels' rays enter the shell, by its tops and at open borders its walls: one workgroup per face, first to count,
 // then to fill the pixels' lists.
-#import furrier::camera::{view, totals, OVERFLOW, camera_from_world, ray_through, direction_through, pixel_at, faces_eye, meet, window_of, skin_z, spans, cursors}
+#import furrier::constants::OVERFLOW
+#import furrier::camera::{view, totals, camera_from_world, ray_through, direction_through, pixel_at, faces_eye, meet, window_of, skin_z, spans, cursors}
 #import furrier::faces::{face_corner, face_shape, start_m}
 #import furrier::scene::scene
 

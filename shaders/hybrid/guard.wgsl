@@ -1,7 +1,8 @@
 // Guard hair as camera-facing ribbons: one thread per piece of a strand, first to count the fragments of every pixel, then to
 // fill the pixels' lists (docs/steps/strands.md).
+#import furrier::constants::{LEAST_SHARE, OVERFLOW}
 #import furrier::scene::{scene, triangles, vertices, strands, point_of}
-#import furrier::camera::{view, totals, OVERFLOW, camera_from_world, pixel_at, faces_eye, flat_of, plane_depth, skin_z, skin_triangle, opaque_m, spans, cursors}
+#import furrier::camera::{view, totals, camera_from_world, pixel_at, faces_eye, flat_of, plane_depth, skin_z, skin_triangle, opaque_m, spans, cursors}
 #import furrier::guard::radius_factor
 
 override FILL: bool = false;
@@ -13,8 +14,6 @@ override FILL: bool = false;
 @group(3) @binding(2) var<storage, read_write> fragment_share: array<u32>;
 @group(3) @binding(3) var<storage, read_write> fragment_pixel: array<u32>;
 
-// Share of what a hair covers at most below which a corner of it is left out.
-const LEAST_SHARE: f32 = 0.01;
 // Pixels that one thread looks at, at most: some drivers end loops that run longer.
 const MOST_PIXELS: u32 = 60000u;
 

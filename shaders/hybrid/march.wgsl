@@ -1,18 +1,14 @@
 // Rays through the undercoat, one thread per pixel, and the stretches they find.
+#import furrier::constants::{MOST_STEPS, MOST_STEP_GROWTH, MOST_STEP_LENGTHENING, OVERFLOW, STEPS, STRETCHES}
 #import furrier::scene::scene
 #import furrier::prism::{Place, barycentric}
-#import furrier::camera::{view, totals, OVERFLOW, STEPS, STRETCHES, pixel_count, pixel_of, direction_through, ray_through, meet, skin_z, spans, cursors,
+#import furrier::camera::{view, totals, pixel_count, pixel_of, direction_through, ray_through, meet, skin_z, spans, cursors,
     opaque_m, heads, NO_SKIN}
 #import furrier::faces::{faces, place_on, face_shape}
-#import furrier::march::{advance, walk_from, Stepping, MOST_STEPS}
-#import furrier::stretch::{Stretch, pack_faces}
+#import furrier::march::{advance, walk_from, Stepping}
+#import furrier::stretch::{NO_STRETCH, Stretch, pack_faces}
 #import furrier::undercoat_look::undercoat_look
 
-// How much deeper a ray's last steps may be than its first.
-const MOST_PATIENCE: f32 = 4.0;
-// How much longer they may be.
-const MOST_LENGTHENED: f32 = 2.0;
-const NO_STRETCH: u32 = 0xffffffffu;
 // Some drivers end loops that run longer.
 const MOST_ROUNDS: u32 = 60000u;
 
@@ -147,8 +143,8 @@ fn march_pixel(at: u32) -> u32 {
         var end_m = 0.0;
         for (var s = 0u; s < MOST_STEPS && walk.alive && through > scene.opaque; s++) {
             // A step's error grows as the square of its depth, and counts as what is left of the ray.
-            let patience = min(inverseSqrt(through), MOST_PATIENCE);
-            let stepping = Stepping(scene.step_depth * patience, scene.step_layers * min(patience, MOST_LENGTHENED));
+            let scale = min(inverseSqrt(through), MOST_STEP_GROWTH);
+            let stepping = Stepping(scene.step_depth * scale, scene.step_layers * min(scale, MOST_STEP_LENGTHENING));
             let taken = advance(&walk, view.eye_m, direction, far_m, stepping);
             if taken.depth <= 0.0 {
                 continue;

@@ -1,7 +1,8 @@
 // Brings every pixel's fragments into the order of (depth, id, point): one thread per fragment counts those of its pixel that
 // come before it. However many there are, none is dropped.
+#import furrier::constants::FRAGMENTS
 #import furrier::scene::{scene, strands}
-#import furrier::camera::{view, totals, FRAGMENTS, spans, cursors}
+#import furrier::camera::{view, totals, spans, cursors}
 
 @group(3) @binding(0) var<storage, read> fragment_z: array<f32>;
 @group(3) @binding(1) var<storage, read> fragment_point: array<u32>;

@@ -1,19 +1,13 @@
 // Fills the stored shadow, the optical depth of undercoat, and of guard hair in the mean, towards the key light: one thread
 // per corner of sub-elements and level.
-#import furrier::scene::{scene, triangles, AT_BORDER}
+#import furrier::constants::{AT_BORDER, DARK, DARK_AT_BORDERS, HASTE, MOST_STEPS, MOST_STEP_GROWTH, MOST_STEP_LENGTHENING,
+    SHADOW_STEP_DEPTH, SHADOW_STEP_LAYERS}
+#import furrier::scene::{scene, triangles}
 #import furrier::prism::{Place, jacobian, corners_of, corner_place}
 #import furrier::undercoat::code_value
-#import furrier::march::{advance, walk_from, Stepping, MOST_STEPS}
+#import furrier::march::{advance, walk_from, Stepping}
 #import furrier::blocks::{blocks, write_byte, owner_of}
 #import furrier::mean_shadow::{mean_depths, tips_m}
-
-// Optical depth beyond which no light is left; the same beside an open border.
-const DARK: f32 = 8.0;
-const DARK_AT_BORDERS: f32 = 15.0;
-// How much deeper steps become with each optical depth passed, and how much deeper and longer they are at most.
-const HASTE: f32 = 0.25;
-const MOST_PATIENCE: f32 = 4.0;
-const MOST_LENGTHENED: f32 = 2.0;
 
 @compute @workgroup_size(64)
 fn shadow(
@@ -39,8 +33,8 @@ fn shadow(
     var depth = 0.0;
     for (var i = 0u; i < MOST_STEPS && walk.alive && depth < enough; i++) {
         // Steps towards the light may be long: what they miss is blurred by the shadow's own resolution.
-        let patience = min(1.0 + HASTE * depth, MOST_PATIENCE);
-        let stepping = Stepping(0.5 * patience, 0.5 * min(patience, MOST_LENGTHENED));
+        let scale = min(1.0 + HASTE * depth, MOST_STEP_GROWTH);
+        let stepping = Stepping(SHADOW_STEP_DEPTH * scale, SHADOW_STEP_LAYERS * min(scale, MOST_STEP_LENGTHENING));
         depth += advance(&walk, origin_m, scene.to_key, 1e30, stepping).depth;
     }
     depth += mean_depths(triangle, b, t * scene.undercoat_kind.top_m / tips_m()).y;

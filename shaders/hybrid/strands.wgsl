@@ -1,8 +1,9 @@
 // Light on guard hair, one thread per strand, as src/hybrid/guard_light.rs.
-#import furrier::scene::{scene, triangles, Strand, strands, lights, point_of, normal_at, lean_at, density_at, length_at, unit_or, NOTHING, AT_BORDER}
+#import furrier::constants::{AT_BORDER, LOOKS, NOTHING}
+#import furrier::scene::{scene, triangles, Strand, strands, lights, point_of, normal_at, lean_at, density_at, length_at, unit_or}
 #import furrier::light::light_at
 #import furrier::camera::view
-#import furrier::guard::{LOOKS, guard_ramp, root_of}
+#import furrier::guard::{guard_ramp, root_of}
 #import furrier::fur_light::{angles_of, cos_of, guard_lobes, shadow_power, slant_depth, sky_depth, terminator, above_both}
 #import furrier::mean_shadow::{mean_depths, tips_m}
 #import furrier::undercoat_look::key_depth

@@ -2,7 +2,8 @@
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
-#import furrier::coat::{CoatVertex, tile}
+#import furrier::constants::{INVISIBLE, LEAST_CLEAR, LEAST_COSINE}
+#import furrier::coat::{CoatVertex, depth_of_opacity, presence}
 
 // Texels along the edge per texel along the hair that one fetch may average.
 const MAX_STRETCH: f32 = 4.0;
@@ -86,10 +87,10 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let narrowed = vec2(min(1.0, MAX_STRETCH * max(texels.y, 1.0) / max(texels.x, 1e-6)), 1.0);
     let surface = textureSampleGrad(fin_albedo, fin_sampler, in.uv, 0, uv_dx * narrowed, uv_dy * narrowed);
     let medium = textureSampleGrad(fin_tangent, fin_sampler, in.uv, 0, uv_dx * narrowed, uv_dy * narrowed);
-    let present = in.tint.w * smoothstep(0.0, 0.01, length(in.offset_m) / tile.height_m);
-    let depth = -log(max(1.0 - surface.a, 1e-3)) * in.weight * present;
+    let present = in.tint.w * presence(in.offset_m);
+    let depth = depth_of_opacity(surface.a) * in.weight * present;
     let opacity = 1.0 - exp(-depth);
-    if opacity < 0.002 {
+    if opacity < INVISIBLE {
         discard;
     }
 
@@ -100,13 +101,13 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let world_ray = ray_direction(in.position_m);
     let normal = normalize(in.normal);
     let hair = Hair(surface.rgb * in.tint.rgb, tangent, normal, -world_ray);
-    let outside_depth = -log(max(medium.a, 1e-3)) * present;
+    let outside_depth = -log(max(medium.a, LEAST_CLEAR)) * present;
     var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
     for (var i = 0u; i < view.light_count; i++) {
         let light = light_at(view.lights[i], in.position_m);
         let cos_light = dot(normal, light.to_light);
         let along_light = dot(tangent, light.to_light);
-        let lateral = sqrt(max(0.0, 1.0 - along_light * along_light)) / max(abs(cos_light), 0.02);
+        let lateral = sqrt(max(0.0, 1.0 - along_light * along_light)) / max(abs(cos_light), LEAST_COSINE);
         let shadow = exp(-outside_depth * lateral);
         radiance += above_horizon(cos_light) * light.irradiance
             * scattered(hair, light.to_light, shadow, multiply_scattered(shadow, hair.albedo));

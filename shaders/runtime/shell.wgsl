@@ -3,21 +3,16 @@
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
+#import furrier::constants::{DEEPEST_HAIR, INVISIBLE, LEAST_CLEAR, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
 #import furrier::coat::{CoatVertex, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
-    lateral, path_through_slab, footprint, fetch, run_through_slab, gain, decode_medium, fin_share}
+    lateral, shadow_slant, depth_of_opacity, presence, path_through_slab, footprint, fetch, run_through_slab, gain, medium_of, fin_share}
 
 // Which side of the shells this pass draws: the far one first, outer to inner, then the near one, inner to outer.
 override NEAR_SIDE: bool = true;
 // Whether fins are drawn too and take their share.
 override WITH_FINS: bool = true;
-// As graphics hardware does at most; the far side lies behind the near one and can do with less.
-const NEAR_TAPS: f32 = 16.0;
+// Taps of the far side, which lies behind the near one and can do with fewer.
 const FAR_TAPS: f32 = 4.0;
-// An opacity that no eight-bit picture shows; writing depth for it would hide hair behind it.
-const INVISIBLE: f32 = 0.002;
-// Hair deeper than this is hidden as well as it is dark; where it is seen all the same, at a border or in a parting, light
-// finds the way that the eye found.
-const DEEPEST: f32 = 2.5;
 
 @group(2) @binding(0) var<storage, read> vertices: array<CoatVertex>;
 @group(2) @binding(1) var<storage, read> indices: array<u32>;
@@ -56,7 +51,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
     let uv_b = vec2(b.u - a.u, b.v - a.v) * tile.edge_m;
     let uv_c = vec2(c.u - a.u, c.v - a.v) * tile.edge_m;
     let area = uv_b.x * uv_c.y - uv_c.x * uv_b.y;
-    let scale = select(0.0, 1.0 / area, abs(area) > 1e-30);
+    let scale = select(0.0, 1.0 / area, abs(area) > LEAST_UV_AREA);
 
     let own = vertices[indices[index]];
     var out: Varyings;
@@ -74,7 +69,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
     out.layer = layer;
     out.axis = own.axis;
     let foot = cross(b.position_m - a.position_m, c.position_m - a.position_m);
-    out.spread = sqrt(clamp(length(cross(edge_b, edge_c)) / max(length(foot), 1e-30), 0.01, 100.0));
+    out.spread = clamp(sqrt(length(cross(edge_b, edge_c)) / max(length(foot), 1e-30)), 1.0 / MOST_SPREAD, MOST_SPREAD);
 
     // Which side is seen follows from the offsets, not from the winding, so mirrored parts need no care.
     let face = cross(edge_b, edge_c);
@@ -92,7 +87,6 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let uv_dx = dpdx(in.uv);
     let uv_dy = dpdy(in.uv);
-    let length_factor = length(in.offset_m) / tile.height_m;
     let normal = normalize(in.normal);
     // Axes in the plane of the smooth normal, or facets would show.
     let x_axis = in.x_axis - normal * dot(normal, in.x_axis);
@@ -112,15 +106,15 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     // The surface bends away from the ray by half its normal curvature along it, measured in metres of the tile.
     let sideways = x_axis * sweep.direction.x + y_axis * sweep.direction.y;
     let turn = in.x_turn * sweep.direction.x + in.y_turn * sweep.direction.y;
-    let bend_per_m = 0.5 * dot(turn, sideways) / max(dot(normal, at.world_from_tile[2]), 0.05);
+    let bend_per_m = 0.5 * dot(turn, sideways) / max(dot(normal, at.world_from_tile[2]), LEAST_RISE);
     let path_m = path_through_slab(ray, slab_m, bend_per_m);
     let inwards = select(-0.5, 0.5, NEAR_SIDE) * path_m;
     let uv = in.uv + inwards * sweep.direction.xy / tile.edge_m;
 
     let run = run_through_slab(sweep, path_m, slab_m, slopes[in.layer]);
-    let spot = footprint(uv_dx, uv_dy, run, select(FAR_TAPS, NEAR_TAPS, NEAR_SIDE));
+    let spot = footprint(uv_dx, uv_dy, run, select(FAR_TAPS, MOST_TAPS, NEAR_SIDE));
     let layer = i32(in.layer);
-    let medium = decode_medium(fetch(medium_texture, uv, layer, spot), spot.level);
+    let medium = medium_of(fetch(medium_texture, uv, layer, spot));
     // Ends count where the run is short, and colour varies little from hair to hair: one tap each.
     let ends = textureSampleLevel(ends_texture, hair_sampler, uv, layer, spot.round_level).r;
     if medium.extinction + ends == 0.0 {
@@ -130,28 +124,25 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 
     // τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], model e of docs/steps/shells.md; g by the pixel's own mip.
     let through = path_m * lateral(at, world_ray, medium);
-    let end_depth = -log(max(1.0 - ends, 1e-3)) * min(1.0, path_m * ray.fall / slab_m);
-    let gained = gain(footprint(uv_dx, uv_dy, vec2(0.0), NEAR_TAPS).level, ray.cosine);
+    let of_ends = depth_of_opacity(ends) * min(1.0, path_m * ray.fall / slab_m);
+    let gained = gain(footprint(uv_dx, uv_dy, vec2(0.0), MOST_TAPS).level, ray.cosine);
     let kept = select(1.0, 1.0 - fin_share(dot(normal, world_ray)), WITH_FINS);
-    // Skin without hair has offsets of length 0; the last hundredth fades.
-    let present = in.tint.w * smoothstep(0.0, 0.01, length_factor);
-    let depth = gained * (through + end_depth) * present * kept;
+    let present = in.tint.w * presence(in.offset_m);
+    let depth = gained * (through + of_ends) * present * kept;
     let opacity = 1.0 - exp(-depth);
     if opacity < INVISIBLE {
         discard;
     }
 
     // m, where there is enough hair for eight bits to tell; its length says how far the hairs agree.
-    let agreement = min(length(medium.tangent) / max(medium.extinction, 1e-3), 1.0);
-    let tangent = normalize(at.world_from_tile * (medium.tangent + vec3(0.0, 0.0, 1e-3))) * agreement;
+    let agreement = min(length(medium.tangent) / max(medium.extinction, LEAST_EXTINCTION), 1.0);
+    let tangent = normalize(at.world_from_tile * (medium.tangent + vec3(0.0, 0.0, LEAST_EXTINCTION))) * agreement;
     let hair = Hair(surface.rgb * in.tint.rgb, tangent, normal, -world_ray);
-    let outside_depth = min(-log(max(surface.a, 1e-3)), DEEPEST) * present;
+    let outside_depth = min(-log(max(surface.a, LEAST_CLEAR)), DEEPEST_HAIR) * present;
     var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
     for (var i = 0u; i < view.light_count; i++) {
         let light = light_at(view.lights[i], in.position_m);
-        let light_ray = ray_in_tile(at, light.to_light);
-        let slant = lateral(at, light.to_light, medium) / (abs(light_ray.direction.z) * max(medium.extinction, 1e-3));
-        let shadow = exp(-outside_depth * slant);
+        let shadow = exp(-outside_depth * shadow_slant(at, light.to_light, medium));
         let seen = above_horizon(dot(normal, light.to_light));
         radiance += seen * light.irradiance * scattered(hair, light.to_light, shadow, multiply_scattered(shadow, hair.albedo));
     }

@@ -2,6 +2,7 @@
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
 #import furrier::shading::skin_radiance
+#import furrier::constants::{LEAST_CLEAR, LEAST_COSINE}
 #import furrier::coat::{hair_sampler, albedo_texture}
 
 @group(2) @binding(0) var base_sampler: sampler;
@@ -31,7 +32,7 @@ fn vertex(
 }
 
 // Skin that is seen lies at a border or in a parting, where light finds the way that the eye found.
-const DEEPEST: f32 = 1.5;
+const DEEPEST_SKIN: f32 = 1.5;
 
 @fragment
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
@@ -43,7 +44,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let world_ray = ray_direction(in.position_m);
     let turned = normalize(in.normal);
     let normal = select(turned, -turned, dot(turned, world_ray) > 0.0);
-    let outside_depth = min(-log(max(cover.a, 1e-3)) * in.coat_density, DEEPEST);
+    let outside_depth = min(-log(max(cover.a, LEAST_CLEAR)) * in.coat_density, DEEPEST_SKIN);
     let gloss = select(1.0, 0.0, furred);
 
     var radiance = albedo * view.ambient * exp(-outside_depth);
@@ -51,7 +52,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         let light = light_at(view.lights[i], in.position_m);
         let cos_light = dot(turned, light.to_light);
         // Upright hair of which 45 degrees is the stored case: tan θ.
-        let slope = sqrt(max(0.0, 1.0 - cos_light * cos_light)) / max(abs(cos_light), 0.02);
+        let slope = sqrt(max(0.0, 1.0 - cos_light * cos_light)) / max(abs(cos_light), LEAST_COSINE);
         let shadow = exp(-outside_depth * max(slope, 0.3));
         radiance += light.irradiance * shadow * skin_radiance(albedo, normal, -world_ray, light.to_light, gloss);
     }

@@ -25,14 +25,6 @@ struct View {
     padding: u32,
 }
 
-// What a band came to, read back by the host: indices into its totals. The last is not 0 where a list was too short, so that
-// the band must be drawn again.
-const STARTS: u32 = 0u;
-const FRAGMENTS: u32 = 1u;
-const STRETCHES: u32 = 2u;
-const STEPS: u32 = 3u;
-const OVERFLOW: u32 = 4u;
-
 // Where a pixel's items lie in a list.
 struct Span {
     begin: u32,
@@ -40,6 +32,8 @@ struct Span {
 }
 
 @group(2) @binding(0) var<uniform> view: View;
+// What a band came to, read back by the host, at STARTS, FRAGMENTS, STRETCHES, STEPS and OVERFLOW. The last is not 0 where a list
+// was too short, so that the band must be drawn again.
 @group(2) @binding(1) var<storage, read_write> totals: array<atomic<u32>>;
 // Of every pixel of the band: ~bits of the skin's depth and ~triangle, 0 where there is no skin.
 @group(2) @binding(2) var<storage, read_write> skin_depth: array<atomic<u32>>;

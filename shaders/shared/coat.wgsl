@@ -1,10 +1,8 @@
 // A tile on the skin: its textures, its law of opacity, its frame (docs/steps/runtime.md).
 #define_import_path furrier::coat
 
-const PI: f32 = 3.14159265;
-const GAIN_ANGLES: array<f32, 9> = array(0.0, 10.0, 22.0, 35.0, 48.0, 60.0, 70.0, 79.0, 86.0);
-// cos 87 degrees: past it a slab is no longer a plane.
-const MIN_COS: f32 = 0.052;
+#import furrier::constants::{FADE_BELOW, GAIN_ANGLES_DEG, LEAST_AXIS, LEAST_BULK, LEAST_CLEAR, LEAST_COSINE, LEAST_DIRECTION,
+    LEAST_EXTINCTION, LEAST_VOLUME, PI}
 
 struct Tile {
     // Length that one unit of UV stands for, m.
@@ -18,13 +16,13 @@ struct Tile {
     mips: u32,
     // 1 where the coat's tint gives shells colour and density, 0 where the texels hold them.
     tinted: f32,
+    // Extinction that a fetched 1 of the medium stands for, 1/m.
+    medium_unit_per_m: f32,
 }
 
 struct Mip {
-    // Gains at GAIN_ANGLES.
+    // At GAIN_ANGLES_DEG.
     gains: array<f32, 9>,
-    // 1 over the extinction that a stored 1 stands for, m.
-    inverse_scale_m: f32,
 }
 
 struct CoatVertex {
@@ -60,9 +58,8 @@ struct Frame {
 
 fn frame(x_axis: vec3<f32>, y_axis: vec3<f32>, z_axis: vec3<f32>) -> Frame {
     let xy = cross(x_axis, y_axis);
-    // Hair lying flat would give a volume of 0; 3 degrees above the skin is as low as it goes.
     let signed_volume = dot(z_axis, xy);
-    let volume = max(max(abs(signed_volume), 0.05 * length(xy) * length(z_axis)), 1e-12);
+    let volume = max(max(abs(signed_volume), LEAST_VOLUME * length(xy) * length(z_axis)), LEAST_BULK);
     let scale = select(-1.0, 1.0, signed_volume >= 0.0) / volume;
     let rows = mat3x3(cross(y_axis, z_axis), cross(z_axis, x_axis), xy) * scale;
     return Frame(mat3x3(x_axis, y_axis, z_axis), transpose(rows), volume);
@@ -73,7 +70,7 @@ fn frame(x_axis: vec3<f32>, y_axis: vec3<f32>, z_axis: vec3<f32>) -> Frame {
 // height, as a length.
 fn hair_frame(axis: vec3<f32>, texture_axis: vec3<f32>, normal: vec3<f32>, spread: f32, z_axis: vec3<f32>) -> Frame {
     let along = axis - normal * dot(normal, axis);
-    let x_axis = normalize(select(texture_axis, along, dot(along, along) > 1e-6 * dot(axis, axis)));
+    let x_axis = normalize(select(texture_axis, along, length(along) > LEAST_AXIS * length(axis)));
     return frame(spread * x_axis, spread * cross(normal, x_axis), z_axis);
 }
 
@@ -89,8 +86,8 @@ struct Ray {
 fn ray_in_tile(at: Frame, world: vec3<f32>) -> Ray {
     let direction = at.tile_from_world * world;
     let size = length(direction);
-    let z = max(abs(direction.z), MIN_COS * size);
-    return Ray(vec3(direction.xy, select(-z, z, direction.z >= 0.0)), z / size, abs(direction.z));
+    let z = max(abs(direction.z), LEAST_COSINE * size);
+    return Ray(vec3(direction.xy, select(-z, z, direction.z > 0.0)), z / size, abs(direction.z));
 }
 
 // What a texel of the medium holds.
@@ -101,25 +98,43 @@ struct Medium {
     tangent: vec3<f32>,
 }
 
-// Between two mips the scales' harmonic mean: what is alike in both then stays as it is.
-fn decode_medium(texel: vec4<f32>, level: f32) -> Medium {
-    let mip = u32(level);
-    let next = min(mip + 1u, tile.mips - 1u);
-    let scale = 1.0 / mix(mips[mip].inverse_scale_m, mips[next].inverse_scale_m, fract(level));
-    let tangent = (texel.yzw * 255.0 - 128.0) / 127.0;
-    return Medium(texel.x * scale, tangent * scale);
+// The texture holds decoded numbers over one unit for all mips, so that a sampler's mean between two mips is that of the law.
+fn medium_of(texel: vec4<f32>) -> Medium {
+    return Medium(texel.x * tile.medium_unit_per_m, texel.yzw * tile.medium_unit_per_m);
 }
 
 // Extinction that a ray along the unit vector `world` meets, 1/m of the ray. Hair keeps its diameter under the frame M: it
-// becomes |M m̂| times as long in a volume det M times as large. For M = 1 this is A·sqrt(1 - (ω·m)²).
+// becomes |M m̂| times as long in a volume det M times as large. For M = 1 this is A·sqrt(1 - (ω·m)²). Hair without a direction
+// has none.
 fn lateral(at: Frame, world: vec3<f32>, medium: Medium) -> f32 {
+    return select(0.0, across(at, world, medium), length(medium.tangent) > LEAST_DIRECTION);
+}
+
+// The same, hair without a direction counted as lying across the ray.
+fn across(at: Frame, world: vec3<f32>, medium: Medium) -> f32 {
     let size = length(medium.tangent);
     var stretched = medium.extinction;
-    if size > 0.0 {
+    if size > LEAST_DIRECTION {
         stretched *= length(at.world_from_tile * (medium.tangent / size));
     }
     let along = dot(world, at.world_from_tile * medium.tangent);
     return sqrt(max(0.0, stretched * stretched - along * along)) / at.volume;
+}
+
+// How much more hair a light from `to_light` meets than one at 45 degrees meets of upright hair.
+fn shadow_slant(at: Frame, to_light: vec3<f32>, medium: Medium) -> f32 {
+    let light = ray_in_tile(at, to_light);
+    return across(at, to_light, medium) / (abs(light.direction.z) * max(medium.extinction, LEAST_EXTINCTION));
+}
+
+// Optical depth of an opacity: κ of the filtered 1 - e^-κ, and that of a fin.
+fn depth_of_opacity(ends: f32) -> f32 {
+    return -log(max(1.0 - ends, LEAST_CLEAR));
+}
+
+// How much of hair with this offset is there: skin without hair has offsets of length 0, and the last hundredth fades.
+fn presence(offset_m: vec3<f32>) -> f32 {
+    return smoothstep(0.0, FADE_BELOW, length(offset_m) / tile.height_m);
 }
 
 // How far a ray runs through a slab, m, from where it enters by the slab's top to where it leaves by the bottom or, on
@@ -182,7 +197,7 @@ fn run_through_slab(ray: Ray, path_m: f32, slab_m: f32, slope: vec2<f32>) -> vec
 }
 
 fn gain_of_mip(mip: u32, degrees: f32) -> f32 {
-    var angles = GAIN_ANGLES;
+    var angles = GAIN_ANGLES_DEG;
     for (var i = 1u; i < 9u; i++) {
         if degrees <= angles[i] {
             return mix(mips[mip].gains[i - 1u], mips[mip].gains[i], (degrees - angles[i - 1u]) / (angles[i] - angles[i - 1u]));

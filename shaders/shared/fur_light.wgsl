@@ -1,11 +1,9 @@
 // How hair scatters, and how hair above a point shadows it: src/shade/ and src/volume/scene.rs.
 #define_import_path furrier::fur_light
 
+#import furrier::constants::{DEEPEST_HAIR, HORIZON, PI}
 #import furrier::scene::{scene, Kind}
 
-const PI: f32 = 3.14159265358979;
-// Least cosine between normal and light for which hair shadows as a flat layer.
-const HORIZON: f32 = 0.08;
 
 // Between a hair, light and eye; directions point away from the hair.
 struct Angles {
@@ -90,13 +88,10 @@ fn shadow_power(albedo: vec3<f32>) -> vec3<f32> {
     return sqrt(clamp(1.0 - albedo, vec3(0.0), vec3(1.0)));
 }
 
-// Greatest optical depth of a flat layer.
-const DEEPEST: f32 = 2.5;
-
 // Optical depth towards a light through a flat layer with hair area `above` per skin area.
 fn slant_depth(above: f32, to_light: vec3<f32>, normal: vec3<f32>, lean: vec3<f32>) -> f32 {
     let along = dot(to_light, lean);
-    return min(above * sqrt(max(1.0 - along * along, 0.0)) / max(dot(to_light, normal), HORIZON), DEEPEST);
+    return min(above * sqrt(max(1.0 - along * along, 0.0)) / max(dot(to_light, normal), HORIZON), DEEPEST_HAIR);
 }
 
 // Share of a light that the body lets pass to hair over skin with this normal.
@@ -107,7 +102,7 @@ fn terminator(to_light: vec3<f32>, normal: vec3<f32>) -> f32 {
 
 // Optical depth towards the whole sky.
 fn sky_depth(above: f32) -> f32 {
-    return min(1.5 * 0.25 * PI * above, DEEPEST);
+    return min(1.5 * 0.25 * PI * above, DEEPEST_HAIR);
 }
 
 // The error function within 1.5e-7 (Abramowitz and Stegun 1964, 7.1.26).

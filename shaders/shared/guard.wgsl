@@ -3,9 +3,6 @@
 
 #import furrier::scene::{scene, Strand}
 
-// How often a strand is lit, as in src/hybrid/strands/mod.rs.
-const LOOKS: u32 = 8u;
-
 // Barycentric coordinates of a strand's root.
 fn root_of(strand: Strand) -> vec3<f32> {
     return vec3(strand.b, 1.0 - strand.b.x - strand.b.y);

@@ -1,15 +1,11 @@
 // Rays through the shell, from prism to prism (Andersen et al. 2016 §3.2), as src/volume/march/.
 #define_import_path furrier::march
 
-#import furrier::scene::{scene, triangles, prism_of, density_at, length_at, table_at, NOTHING}
+#import furrier::constants::{NOTHING, ON_SIDE, PI}
+#import furrier::scene::{scene, triangles, prism_of, density_at, length_at, table_at}
 #import furrier::prism::{Prism, Place, Jacobian, jacobian, rates_along, moved, inside_of, barycentric, subelement, subelement_centre}
 #import furrier::undercoat::{column_over, column_crowding, code_value, decode_value, mean_sine}
 
-const PI: f32 = 3.14159265358979;
-// How close to a prism's side counts as on it.
-const ON_SIDE: f32 = 1e-4;
-// No march takes more steps.
-const MOST_STEPS: u32 = 8192u;
 // Side numbers after those of the edges opposite to corners 0, 1 and 2.
 const OUT: u32 = 3u;
 

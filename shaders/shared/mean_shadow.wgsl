@@ -1,13 +1,9 @@
 // The key light's shadow in hair as dense as it is in the mean, as src/volume/mean/ keeps it.
 #define_import_path furrier::mean_shadow
 
-#import furrier::scene::{scene, triangles, tables, columns, TABLE, LINEAR}
+#import furrier::constants::{LINEAR, MEAN_LAYERS, TABLES, TABLE_VALUES}
+#import furrier::scene::{scene, triangles, tables, columns}
 #import furrier::prism::around_corners
-
-// Intervals of height up to the tips.
-const LAYERS: u32 = 24u;
-// Tables before the depths of the first column.
-const BEFORE: u32 = 3u;
 
 // Height of the tallest hair where the length field is 1, m; 0 where none grows.
 fn tips_m() -> f32 {
@@ -16,21 +12,21 @@ fn tips_m() -> f32 {
 
 // Parts of a depth: undercoat, guard hair, and hair of other limbs.
 fn of_level(column: u32, level: u32) -> vec3<f32> {
-    let first = 3u * (column * (LAYERS + 1u) + level) + BEFORE * (TABLE + 1u);
+    let first = 3u * (column * (MEAN_LAYERS + 1u) + level) + TABLES * TABLE_VALUES;
     return vec3(tables[first], tables[first + 1u], tables[first + 2u]);
 }
 
 // Number `which` of a triangle's lattice.
 fn of_column(triangle: u32, which: u32, at: f32) -> vec3<f32> {
     let column = columns[triangles[triangle].mean_at + which];
-    let low = min(u32(at), LAYERS - 1u);
+    let low = min(u32(at), MEAN_LAYERS - 1u);
     return mix(of_level(column, low), of_level(column, low + 1u), at - f32(low));
 }
 
 // Optical depths of the undercoat that a march meets and of all other hair towards the key light, at a height given as a share of
 // the tips'. What hair lets through is linear from column to column; but of the hair around depth is, where a trait says so.
 fn mean_depths(triangle: u32, b: vec3<f32>, share: f32) -> vec2<f32> {
-    let at = clamp(share, 0.0, 1.0) * f32(LAYERS);
+    let at = clamp(share, 0.0, 1.0) * f32(MEAN_LAYERS);
     let lattice = around_corners(b, triangles[triangle].mean_splits);
     let corners = lattice.corners;
     let weights = lattice.weights;

@@ -1,13 +1,9 @@
 // What a picture shows, the same for every pass: skin, fields, hair, lights.
 #define_import_path furrier::scene
 
+#import furrier::constants::TABLE_VALUES
 #import furrier::prism::Prism
 #import furrier::light::Light
-
-// No triangle, no item.
-const NOTHING: u32 = 0xffffffffu;
-// Heights at which tables are kept, less one.
-const TABLE: u32 = 256u;
 
 // One kind of hair as a layer over flat skin.
 struct Kind {
@@ -94,10 +90,6 @@ struct Scene {
     // R, TT, TRT.
     lobes: array<Lobe, 3>,
 }
-
-// Traits of triangles: reaches an open edge; depths of the mean shadow of the hair around go linearly from column to column.
-const AT_BORDER: u32 = 1u;
-const LINEAR: u32 = 2u;
 
 struct Triangle {
     corners: vec3<u32>,
@@ -201,9 +193,9 @@ fn clump_at(triangle: u32, b: vec3<f32>) -> f32 {
 
 // A table's value at height t, linear in between.
 fn table_at(table: u32, t: f32) -> f32 {
-    let at = clamp(t, 0.0, 1.0) * f32(TABLE);
-    let low = min(u32(at), TABLE - 1u);
-    let first = table * (TABLE + 1u) + low;
+    let at = clamp(t, 0.0, 1.0) * f32(TABLE_VALUES - 1u);
+    let low = min(u32(at), TABLE_VALUES - 2u);
+    let first = table * TABLE_VALUES + low;
     return tables[first] + (at - f32(low)) * (tables[first + 1u] - tables[first]);
 }
 

@@ -1,9 +1,7 @@
 // Light on hair and on skin, with the shadow that the coat casts on itself (docs/steps/runtime.md).
 #define_import_path furrier::shading
 
-#import furrier::view::view
-
-const PI: f32 = 3.14159265;
+#import furrier::constants::PI
 
 // Share of the light that hair's surface reflects without colouring it, and that passes through and comes back
 // coloured: Fresnel at normal incidence for keratin (index 1.55) is 0.047, and about as much leaves by the way back.

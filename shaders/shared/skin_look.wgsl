@@ -1,9 +1,10 @@
 // What bare or furred skin looks like, as src/hybrid/skin.rs.
 #define_import_path furrier::skin_look
 
+#import furrier::constants::PI
 #import furrier::scene::{scene, lights, position_at, normal_at, lean_at, tint_at, density_at, length_at}
 #import furrier::light::light_at
-#import furrier::fur_light::{above_both, sky_depth, slant_depth, terminator, PI}
+#import furrier::fur_light::{above_both, sky_depth, slant_depth, terminator}
 #import furrier::mean_shadow::{mean_depths, tips_m}
 
 struct SkinLook {

@@ -1,6 +1,9 @@
 // Stretches of rays through undercoat, the virtual fragments of Andersen et al. 2016 §3.3, as linked lists by pixel.
 #define_import_path furrier::stretch
 
+// In place of the index of one.
+const NO_STRETCH: u32 = 0xffffffffu;
+
 struct Stretch {
     radiance: vec3<f32>,
     // Depths along the optical axis, m.

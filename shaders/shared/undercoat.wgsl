@@ -1,12 +1,11 @@
 // How undercoat crowds over a point of the skin, as src/fur/undercoat.rs, and how that is stored, as src/volume/shell/block.rs.
 #define_import_path furrier::undercoat
 
+#import furrier::constants::LARGEST
 #import furrier::scene::{scene, triangles, vertices, clump_at, unit_or}
 #import furrier::hash::{combine, unit, wide_of}
 #import furrier::noise::simplex
 
-// The largest value that a byte can hold.
-const LARGEST: f32 = 15.8789216;
 // In place of an infinite distance.
 const FAR: f32 = 1e30;
 

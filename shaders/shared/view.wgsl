@@ -2,8 +2,7 @@
 #define_import_path furrier::view
 
 #import furrier::light::Light
-
-const MAX_LIGHTS: u32 = 16u;
+#import furrier::constants::MAX_LIGHTS
 
 struct View {
     clip_from_world: mat4x4<f32>,

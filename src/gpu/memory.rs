@@ -13,20 +13,20 @@ pub enum Coding {
     Srgb,
     /// Linear values in eight bits.
     Linear,
-    /// Linear values, widened to half floats: software adapters round the filtered values of eight-bit textures to eight
-    /// bits again, which is too coarse where a shader takes their differences.
-    Wide,
 }
 
-/// byte/255 as the bits of a half float, rounded to nearest; 0 and 1 are exact.
-fn half_of_unorm(byte: u8) -> u16 {
-    let bits = (f32::from(byte) / 255.0).to_bits();
-    if bits == 0 {
-        return 0;
-    }
-    // 1/255 is far above the smallest normal half, so rebiasing the exponent (127 to 15) and rounding ten bits of
-    // mantissa is all there is to do.
-    ((bits - (112 << 23) + (1 << 12)) >> 13) as u16
+/// The bits of the half float nearest to `value`, which lies within what halves hold.
+fn half_of(value: f32) -> u16 {
+    let sign = (value.to_bits() >> 16) as u16 & 0x8000;
+    let size = value.abs().min(65504.0);
+    // Below 2^-14 halves are multiples of 2^-24; above, ten bits of the mantissa are kept and the exponent is counted from 15
+    // instead of 127.
+    let bits = if size < 1.0 / 16384.0 {
+        (size * 16_777_216.0 + 0.5) as u16
+    } else {
+        ((size.to_bits() - (112 << 23) + (1 << 12)) >> 13) as u16
+    };
+    sign | bits
 }
 
 /// Where texels laid out as `T` wait to be read by the host.
@@ -98,6 +98,49 @@ impl Gpu {
     /// [`Kind::Input`] where the images are not a chain of halved, equally long mips, naming the first that is not;
     /// [`Kind::Device`] where the adapter cannot hold as many layers or texels.
     pub fn texture_array(&self, label: &str, images: &[Vec<Image8>], coding: Coding) -> Result<TextureArray> {
+        let four = images.first().and_then(|layers| layers.first()).is_none_or(|base| base.channels == 4);
+        let format = match (four, coding) {
+            (false, _) => wgpu::TextureFormat::R8Unorm,
+            (true, Coding::Srgb) => wgpu::TextureFormat::Rgba8UnormSrgb,
+            (true, Coding::Linear) => wgpu::TextureFormat::Rgba8Unorm,
+        };
+        self.array(label, images, format, &|_, image, bytes| bytes.extend_from_slice(&image.pixels))
+    }
+
+    /// The same of half floats: `decode` says what a byte of a mip and channel stands for. Software adapters round the filtered
+    /// values of eight-bit textures to eight bits again, which is too coarse where a shader takes their differences.
+    ///
+    /// # Errors
+    /// As [`Self::texture_array`].
+    pub fn half_array(
+        &self,
+        label: &str,
+        images: &[Vec<Image8>],
+        decode: &dyn Fn(usize, usize, u8) -> f32,
+    ) -> Result<TextureArray> {
+        let channels = images.first().and_then(|layers| layers.first()).map_or(4, |base| base.channels as usize);
+        let format = if channels == 1 { wgpu::TextureFormat::R16Float } else { wgpu::TextureFormat::Rgba16Float };
+        let mut mips = Vec::with_capacity(images.len());
+        for mip in 0..images.len() {
+            let table =
+                |channel: usize| -> Vec<u16> { (0..=255).map(|byte| half_of(decode(mip, channel, byte))).collect() };
+            mips.push((0..channels).map(table).collect::<Vec<_>>());
+        }
+        self.array(label, images, format, &|mip, image, bytes| {
+            for texel in image.pixels.chunks_exact(channels) {
+                bytes
+                    .extend(texel.iter().zip(&mips[mip]).flat_map(|(&byte, table)| table[byte as usize].to_le_bytes()));
+            }
+        })
+    }
+
+    fn array(
+        &self,
+        label: &str,
+        images: &[Vec<Image8>],
+        format: wgpu::TextureFormat,
+        push: &dyn Fn(usize, &Image8, &mut Vec<u8>),
+    ) -> Result<TextureArray> {
         let base = images.first().and_then(|layers| layers.first());
         let base = base.ok_or_else(|| Error::input("a texture has no images").with_field(label))?;
         let layers = images[0].len();
@@ -113,13 +156,6 @@ impl Gpu {
                     limits.max_texture_dimension_2d, limits.max_texture_array_layers
                 )));
         }
-        let format = match (base.channels, coding) {
-            (1, Coding::Wide) => wgpu::TextureFormat::R16Float,
-            (1, _) => wgpu::TextureFormat::R8Unorm,
-            (_, Coding::Srgb) => wgpu::TextureFormat::Rgba8UnormSrgb,
-            (_, Coding::Linear) => wgpu::TextureFormat::Rgba8Unorm,
-            (_, Coding::Wide) => wgpu::TextureFormat::Rgba16Float,
-        };
         let mut bytes = Vec::new();
         for (mip, row) in images.iter().enumerate() {
             let expected = [(base.width >> mip).max(1), (base.height >> mip).max(1), base.channels];
@@ -139,12 +175,7 @@ impl Gpu {
                             expected[0], expected[1], expected[2]
                         )));
                 }
-                match coding {
-                    Coding::Wide => {
-                        bytes.extend(image.pixels.iter().flat_map(|&byte| half_of_unorm(byte).to_le_bytes()))
-                    }
-                    Coding::Srgb | Coding::Linear => bytes.extend_from_slice(&image.pixels),
-                }
+                push(mip, image, &mut bytes);
             }
         }
         let descriptor = wgpu::TextureDescriptor {

@@ -14,8 +14,7 @@ mod timer;
 pub use adapter::{Adapter, AdapterKind, Choice, adapters, missing_adapter_hint};
 pub use compute::{Binding, Kernel};
 pub use memory::{Coding, ReadBack, TextureArray};
-pub use shader::{Library, Source, compose};
-pub use surface::Screen;
+pub use shader::{Constant, Library, Source, Text, compose};
 pub use timer::Timer;
 
 use crate::error::{Error, Kind, Result};

@@ -6,16 +6,67 @@ use naga_oil::compose::{ComposableModuleDescriptor, Composer, NagaModuleDescript
 use std::borrow::Cow;
 use wgpu::naga::valid::Capabilities;
 
-/// One WGSL file.
+/// One WGSL module.
 #[derive(Clone, Copy, Debug)]
 pub struct Source {
     /// Path below `shaders/`, for messages.
     pub path: &'static str,
-    /// Its text.
-    pub text: &'static str,
+    /// What it says.
+    pub text: Text,
 }
 
-/// Files that others import, read once for many.
+/// What a module says.
+#[derive(Clone, Copy, Debug)]
+pub enum Text {
+    /// A file's text.
+    Wgsl(&'static str),
+    /// Constants that Rust and shaders both need, written once, in Rust: the module `furrier::constants`.
+    Constants(&'static [Constant]),
+}
+
+/// A named constant.
+#[derive(Clone, Copy, Debug)]
+pub enum Constant {
+    /// Whole.
+    U32(&'static str, u32),
+    /// A number.
+    F32(&'static str, f32),
+    /// Several.
+    F32s(&'static str, &'static [f32]),
+}
+
+impl Source {
+    /// The module of `constants`.
+    pub const fn constants(constants: &'static [Constant]) -> Self {
+        Self { path: "constants", text: Text::Constants(constants) }
+    }
+
+    /// Its WGSL.
+    pub fn wgsl(&self) -> Cow<'static, str> {
+        match self.text {
+            Text::Wgsl(text) => text.into(),
+            Text::Constants(constants) => {
+                let lines: String = constants.iter().map(Constant::wgsl).collect();
+                format!("#define_import_path furrier::constants\n{lines}").into()
+            }
+        }
+    }
+}
+
+impl Constant {
+    fn wgsl(&self) -> String {
+        match self {
+            Self::U32(name, value) => format!("const {name}: u32 = {value}u;\n"),
+            Self::F32(name, value) => format!("const {name}: f32 = {value:?};\n"),
+            Self::F32s(name, values) => {
+                let list = values.iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(", ");
+                format!("const {name}: array<f32, {}> = array({list});\n", values.len())
+            }
+        }
+    }
+}
+
+/// Modules that others import, read once for many.
 pub struct Library {
     composer: Composer,
 }
@@ -29,8 +80,8 @@ impl Library {
         let capabilities = Capabilities::default() | Capabilities::SHADER_FLOAT16_IN_FLOAT32;
         let mut composer = Composer::default().with_capabilities(capabilities);
         for source in shared {
-            let described =
-                ComposableModuleDescriptor { source: source.text, file_path: source.path, ..Default::default() };
+            let text = source.wgsl();
+            let described = ComposableModuleDescriptor { source: &text, file_path: source.path, ..Default::default() };
             if let Err(error) = composer.add_composable_module(described) {
                 return Err(fault(source.path, &error.emit_to_string(&composer)));
             }
@@ -43,7 +94,8 @@ impl Library {
     /// # Errors
     /// As [`Self::new`].
     pub fn compose(&mut self, main: Source) -> Result<wgpu::naga::Module> {
-        let described = NagaModuleDescriptor { source: main.text, file_path: main.path, ..Default::default() };
+        let text = main.wgsl();
+        let described = NagaModuleDescriptor { source: &text, file_path: main.path, ..Default::default() };
         let composed = self.composer.make_naga_module(described);
         composed.map_err(|error| fault(main.path, &error.emit_to_string(&self.composer)))
     }

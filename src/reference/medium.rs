@@ -15,7 +15,7 @@ use crate::volume::scene::Scene;
 use crate::volume::shell::Shell;
 
 /// Optical depth of a piece of undercoat, where that is as dense as in the mean: its middle stands for all of it.
-const DEEPEST: f64 = 0.15;
+const MOST_STEP_DEPTH: f64 = 0.15;
 
 /// Optical depth from which on a shadow is followed in short steps, not to be followed too far.
 const DIM: f64 = 3.0;
@@ -146,7 +146,7 @@ impl<'a> Medium<'a> {
             spots.map(|spot| spot.map_or(0.0, |spot| self.uncrowded(&spot, Counted::Undercoat)[0]))
         };
         let dense: f64 = bare(middle).iter().sum();
-        let wanted = (to_m - from_m) * (dense / DEEPEST).max(1.0 / self.detail_m);
+        let wanted = (to_m - from_m) * (dense / MOST_STEP_DEPTH).max(1.0 / self.detail_m);
         let parts = wanted.ceil().clamp(1.0, 256.0);
         let step_m = (to_m - from_m) / parts;
         for part in 0..parts as usize {

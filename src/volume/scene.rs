@@ -125,19 +125,19 @@ impl Layer {
 /// slant. Lights below the horizon count as on it; what the body hides is [`terminator`]'s part.
 pub fn slant_depth(above: f32, to_light: Vec3, normal: Vec3, lean: Vec3) -> f32 {
     let along = to_light.dot(lean);
-    (above * (1.0 - along * along).max(0.0).sqrt() / to_light.dot(normal).max(HORIZON)).min(DEEPEST)
+    (above * (1.0 - along * along).max(0.0).sqrt() / to_light.dot(normal).max(HORIZON)).min(DEEPEST_HAIR)
 }
 
 /// Greatest optical depth of a flat layer: hair deeper than this is hidden as well as it is dark; where it is seen all the
 /// same, at a border or in a parting, light finds the way that the eye found.
-pub const DEEPEST: f32 = 2.5;
+pub const DEEPEST_HAIR: f32 = 2.5;
 
 /// [`slant_depth`] in lanes.
 #[inline(always)]
 pub fn slant_depths<I: Isa>(above: F32s<I>, to_light: Vec3s<I>, normal: Vec3s<I>, lean: Vec3s<I>) -> F32s<I> {
     let along = to_light.dot(lean);
     let sine = (F32s::splat(1.0) - along * along).max(F32s::splat(0.0)).sqrt();
-    (above * sine / to_light.dot(normal).max(F32s::splat(HORIZON))).min(F32s::splat(DEEPEST))
+    (above * sine / to_light.dot(normal).max(F32s::splat(HORIZON))).min(F32s::splat(DEEPEST_HAIR))
 }
 
 /// [`terminator`] in lanes.
@@ -167,11 +167,11 @@ pub fn ramps<I: Isa>(ramp: &[Vec3; 3], s: F32s<I>) -> Vec3s<I> {
 /// [`sky_depth`] in lanes.
 #[inline(always)]
 pub fn sky_depths<I: Isa>(above: F32s<I>) -> F32s<I> {
-    (above * (1.5 * std::f32::consts::FRAC_PI_4)).min(F32s::splat(DEEPEST))
+    (above * (1.5 * std::f32::consts::FRAC_PI_4)).min(F32s::splat(DEEPEST_HAIR))
 }
 
 /// Least cosine between normal and light for which hair shadows as a flat layer.
-const HORIZON: f32 = 0.08;
+pub const HORIZON: f32 = 0.08;
 
 /// Share of a light that the body itself lets pass to hair above skin with this normal: hair stands out of the skin's
 /// shadow a little past the horizon.
@@ -183,5 +183,5 @@ pub fn terminator(to_light: Vec3, normal: Vec3) -> f32 {
 /// Optical depth towards the whole sky under hair area `above`: exp(−1.5 τ) stands in for the mean of exp(−τ/cos θ) over
 /// the hemisphere (2 E₃(τ), within 0.05), with the mean sine π/4 between hair and light.
 pub fn sky_depth(above: f32) -> f32 {
-    (1.5 * std::f32::consts::FRAC_PI_4 * above).min(DEEPEST)
+    (1.5 * std::f32::consts::FRAC_PI_4 * above).min(DEEPEST_HAIR)
 }

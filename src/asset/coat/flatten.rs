@@ -2,7 +2,7 @@
 
 use crate::data::coat::ShellStack;
 use crate::data::image::{Image8, linear_from_srgb, srgb_from_linear, unorm8};
-use crate::data::shell::{HairMedium, end_depth_of_byte, gain_at, unorm};
+use crate::data::shell::{HairMedium, depth_of_byte, gain_at, unorm};
 use crate::error::{Error, Kind, Result};
 use crate::math::Vec3;
 
@@ -58,7 +58,7 @@ fn composite(
 fn opacity(stack: &ShellStack, slab: usize, texel: usize, gain: f32, thickness_m: f32) -> f32 {
     let bytes = &stack.medium[0][slab].pixels[4 * texel..][..4];
     let medium = HairMedium::decode(bytes, stack.extinction_scales_per_m[0]);
-    let kappa = end_depth_of_byte(stack.ends[0][slab].pixels[texel]);
+    let kappa = depth_of_byte(stack.ends[0][slab].pixels[texel]);
     let angle = VIEW_DEG.to_radians();
     let clear: f32 = (0..AZIMUTHS)
         .map(|i| {

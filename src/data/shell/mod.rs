@@ -13,7 +13,7 @@ mod texel;
 
 pub use incidence::Incidence;
 pub use stack::Stack;
-pub use texel::{HairMedium, Texel, end_depth, end_depth_of_byte, signed, unorm};
+pub use texel::{HairMedium, Texel, depth_of_byte, depth_of_opacity, signed, unorm};
 
 use super::coat::GAIN_ANGLES_DEG;
 
@@ -27,6 +27,6 @@ pub fn gain_at(gains: &[f32; 9], theta_deg: f32) -> f32 {
 
 /// Optical depth of one slab of height `slab_m` (in the tile), without gain.
 pub fn slab_optical_depth(texel: &Texel, seen: &Incidence, slab_m: f32) -> f32 {
-    let ends = end_depth(texel.ends) * seen.share_of_ends();
+    let ends = depth_of_opacity(texel.ends) * seen.share_of_ends();
     texel.medium.lateral(seen) * slab_m / seen.in_tile().z.abs() + ends
 }

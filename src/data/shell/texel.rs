@@ -53,13 +53,13 @@ impl HairMedium {
     }
 }
 
-/// κ of the filtered 1 − e^−κ.
-pub fn end_depth(ends: f32) -> f32 {
+/// Optical depth of an opacity: κ of the filtered 1 − e^−κ.
+pub fn depth_of_opacity(ends: f32) -> f32 {
     -libm::log1pf(-ends.min(1.0 - LEAST_CLEAR))
 }
 
-/// κ of a byte that was not filtered. 255 stands for an end that hides all; half a step less keeps the logarithm finite.
-pub fn end_depth_of_byte(byte: u8) -> f32 {
+/// The same of a byte that was not filtered. 255 stands for an end that hides all; half a step less keeps the logarithm finite.
+pub fn depth_of_byte(byte: u8) -> f32 {
     -libm::logf(1.0 - f32::from(byte).min(254.5) / 255.0)
 }
 

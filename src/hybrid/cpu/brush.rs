@@ -5,7 +5,7 @@ use super::pass::{Band, Hair, Pass};
 use super::scratch::TileView;
 use crate::data::strands::Strands;
 use crate::hybrid::strands::ribbon::{self, NARROW, Narrow, Window};
-use crate::hybrid::strands::{Fragment, Knot, Parts, radiance_at};
+use crate::hybrid::strands::{Fragment, Knot, LEAST_SHARE, Parts, radiance_at};
 use crate::math::lanes::{self, F32s, Isa, Scalar, Vec3Row};
 use crate::volume::bins::TILE;
 
@@ -206,10 +206,6 @@ fn within(a: f32, b: f32, pad: f32, from: usize, to: usize) -> [usize; 2] {
     let cut = |v: f32| ((v - from as f32).max(0.0) as i32 as usize).min(to - from - 1);
     [cut(a.min(b) - pad), cut(a.max(b) + pad)]
 }
-
-/// Share of what a hair covers at most below which a corner of it is left out: of the fragments a fourteenth, of what they cover a
-/// thousandth. As in `hybrid/guard.wgsl`.
-const LEAST_SHARE: f32 = 0.01;
 
 /// Pieces fetched before they are drawn.
 const FETCH_AT_ONCE: usize = 32;

@@ -8,12 +8,9 @@ use crate::hybrid::undercoat_light::UndercoatShader;
 use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, MOST, Mask, Row, Vec3Row, Vec3s, Work};
 use crate::volume::march::shadows::Shadows;
-use crate::volume::march::{Journey, Stepping, Steps, Traveller, march};
+use crate::volume::march::{Journey, MOST_STEP_GROWTH, Stepping, Steps, Traveller, march};
 use crate::volume::shell::lattice::Lattices;
 use crate::volume::shell::prisms::Prisms;
-
-/// How much deeper a ray's last steps may be than its first; as in `hybrid/march.wgsl`.
-const MOST_PATIENCE: f32 = 4.0;
 
 /// A ray of a pixel, and where its depths are measured along the optical axis.
 #[derive(Clone, Copy, Debug)]
@@ -167,9 +164,9 @@ impl<I: Isa, const ALL: bool> Traveller<I> for Sight<'_, ALL> {
     }
 
     #[inline(always)]
-    fn patience(&self) -> F32s<I> {
+    fn step_scale(&self) -> F32s<I> {
         // A step's error grows as the square of its depth, and counts as what is left of the ray.
-        (F32s::splat(1.0) / F32s::of(&self.through)).sqrt().within(1.0, MOST_PATIENCE)
+        (F32s::splat(1.0) / F32s::of(&self.through)).sqrt().within(1.0, MOST_STEP_GROWTH)
     }
 
     #[inline(always)]

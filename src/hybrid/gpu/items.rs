@@ -5,7 +5,7 @@ use crate::math::Vec3;
 use crate::volume::scene::Scene;
 use bytemuck::{Pod, Zeroable};
 
-/// No triangle, no item: `NOTHING` of `shared/scene.wgsl`.
+/// No triangle, no item.
 pub const NOTHING: u32 = u32::MAX;
 
 /// Traits of triangles: reaches an open edge; depths of the mean shadow of the hair around go linearly from column to column.

@@ -1,16 +1,18 @@
 //! The kernels of a picture and what they bind.
 
+use super::constants::CONSTANTS;
 use crate::error::{Error, Result};
-use crate::gpu::{Binding, Gpu, Kernel, Library, Source};
+use crate::gpu::{Binding, Gpu, Kernel, Library, Source, Text};
 
 macro_rules! source {
     ($path:literal) => {
-        Source { path: $path, text: include_str!(concat!("../../../shaders/", $path)) }
+        Source { path: $path, text: Text::Wgsl(include_str!(concat!("../../../shaders/", $path))) }
     };
 }
 
-/// Files that others import, imported ones first.
-pub const SHARED: [Source; 17] = [
+/// Modules that others import, imported ones first.
+pub const SHARED: [Source; 18] = [
+    Source::constants(&CONSTANTS),
     source!("shared/hash.wgsl"),
     source!("shared/noise.wgsl"),
     source!("shared/prism.wgsl"),

@@ -5,6 +5,7 @@
 //! says how much it needs and the band is drawn again, with more room or fewer rows. Nothing is dropped.
 
 mod band;
+mod constants;
 pub mod items;
 pub mod kernels;
 pub mod layout;

@@ -34,7 +34,11 @@ pub fn radiance_at<I: Isa>(looks: &Vec3Row, s: F32s<I>) -> Vec3s<I> {
 }
 
 /// A light that ends between two looks bends their curve no more than this, lest it swings over.
-const MOST_BEND: f32 = 3.0;
+pub const MOST_BEND: f32 = 3.0;
+
+/// Share of what a hair covers at most below which a corner of it is left out: of the fragments a fourteenth, of what they cover a
+/// thousandth.
+pub const LEAST_SHARE: f32 = 0.01;
 
 /// Where between looks.
 struct Places<I: Isa> {

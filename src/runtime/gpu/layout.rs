@@ -1,6 +1,6 @@
 //! Structs as the shaders read them; `tests/shaders.rs` compares names, offsets and sizes with the WGSL.
 
-use crate::data::coat::{FinEdge, Sampled, Tile};
+use crate::data::coat::{FinEdge, Sampled, ShellStack, Tile};
 use crate::gpu::light::LightItem;
 use crate::runtime::draw_list::{CoatMesh, Frame, MAX_LIGHTS, SkinMesh};
 use bytemuck::{Pod, Zeroable};
@@ -54,6 +54,8 @@ pub struct TileUniform {
     pub mips: u32,
     /// 1 where the coat's tint gives shells colour and density, 0 where the texels hold them.
     pub tinted: f32,
+    /// Extinction that a number of 1 in the medium's texture stands for, 1/m: see [`medium_unit_per_m`].
+    pub medium_unit_per_m: f32,
 }
 
 /// `Mip` of `shared/coat.wgsl`.
@@ -62,16 +64,19 @@ pub struct TileUniform {
 pub struct Mip {
     /// Gains at the stored angles.
     pub gains: [f32; 9],
-    /// 1 over the extinction that a stored 1 stands for, m.
-    pub inverse_scale_m: f32,
 }
 
 impl Mip {
     /// The mips of `tile`.
     pub fn of(tile: &Tile) -> Vec<Self> {
-        let mips = tile.shells.gains.iter().zip(&tile.shells.extinction_scales_per_m);
-        mips.map(|(&gains, scale_per_m)| Self { gains, inverse_scale_m: 1.0 / scale_per_m }).collect()
+        tile.shells.gains.iter().map(|&gains| Self { gains }).collect()
     }
+}
+
+/// Unit of the decoded medium on the device, 1/m: the largest number of all mips is 1024 of it. Half floats then hold those of
+/// mips with a thousandth of that scale as exactly.
+pub fn medium_unit_per_m(shells: &ShellStack) -> f32 {
+    shells.extinction_scales_per_m.iter().fold(f32::MIN_POSITIVE, |most, &scale| most.max(scale)) / 1024.0
 }
 
 impl TileUniform {
@@ -84,6 +89,7 @@ impl TileUniform {
             layers: tile.shells.layers,
             mips: tile.shells.albedo.len() as u32,
             tinted: if tile.sampled == Sampled::Square { 1.0 } else { 0.0 },
+            medium_unit_per_m: medium_unit_per_m(&tile.shells),
         }
     }
 }

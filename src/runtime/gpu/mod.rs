@@ -2,11 +2,11 @@
 //!
 //! Order: skin (writes depth); the far side of the shells, outer to inner; fins; the near side, inner to outer. Along any
 //! ray through a convex body that is back to front.
-
 //!
 //! Made once and kept: passes and tiles in a [`Renderer`], the geometry of a pose in a [`Prepared`]. A view costs its
 //! uniforms, the passes and the way back.
 
+mod constants;
 pub mod layout;
 pub mod pipelines;
 mod prepared;

@@ -1,17 +1,19 @@
 //! The passes' shaders, bindings and fixed state.
 
+use super::constants::CONSTANTS;
 use super::layout::SkinVertex;
 use crate::error::Result;
-use crate::gpu::{Gpu, Source};
+use crate::gpu::{Gpu, Source, Text};
 
 macro_rules! source {
     ($path:literal) => {
-        Source { path: $path, text: include_str!(concat!("../../../shaders/", $path)) }
+        Source { path: $path, text: Text::Wgsl(include_str!(concat!("../../../shaders/", $path))) }
     };
 }
 
-/// Files that others import, imported ones first.
-pub const SHARED: [Source; 4] = [
+/// Modules that others import, imported ones first.
+pub const SHARED: [Source; 5] = [
+    Source::constants(&CONSTANTS),
     source!("shared/light.wgsl"),
     source!("shared/view.wgsl"),
     source!("shared/shading.wgsl"),

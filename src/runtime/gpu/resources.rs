@@ -1,10 +1,11 @@
 //! What pictures need on the device: tiles, and the geometry of a pose.
 
-use super::layout::{CoatVertex, FinInstance, Mip, SkinVertex, TileUniform};
+use super::layout::{CoatVertex, FinInstance, Mip, SkinVertex, TileUniform, medium_unit_per_m};
 use super::pipelines::Layouts;
 use crate::asset::material::Wrap;
 use crate::data::coat::{FinTexture, Sampled, ShellStack, Tile};
 use crate::data::image::Image8;
+use crate::data::shell::{signed, unorm};
 use crate::error::Result;
 use crate::gpu::{Coding, Gpu, TextureArray};
 use crate::math::Vec2;
@@ -66,8 +67,12 @@ impl GpuTile {
     pub fn new(gpu: &Gpu, layouts: &Layouts, tile: &Tile) -> Result<Self> {
         let shells = &tile.shells;
         let albedo = gpu.texture_array("shell albedo", &shells.albedo, Coding::Srgb)?;
-        let medium = gpu.texture_array("shell medium", &shells.medium, Coding::Wide)?;
-        let ends = gpu.texture_array("shell ends", &shells.ends, Coding::Wide)?;
+        let (unit_per_m, scales_per_m) = (medium_unit_per_m(shells), &shells.extinction_scales_per_m);
+        let medium = gpu.half_array("shell medium", &shells.medium, &|mip, channel, byte| {
+            let scale = scales_per_m.get(mip).copied().unwrap_or(0.0) / unit_per_m;
+            scale * if channel == 0 { unorm(byte) } else { signed(byte) }
+        })?;
+        let ends = gpu.half_array("shell ends", &shells.ends, &|_, _, byte| unorm(byte))?;
         let single = |images: &[Image8]| images.iter().map(|image| vec![image.clone()]).collect::<Vec<_>>();
         let fin_albedo = gpu.texture_array("fin albedo", &single(&tile.fin.albedo), Coding::Srgb)?;
         let fin_tangent = gpu.texture_array("fin tangent", &single(&tile.fin.tangent), Coding::Linear)?;

@@ -1,7 +1,7 @@
 //! Optical depth of undercoat along rays.
 
 use super::volume::Volume;
-use super::{Journey, Stepping, Steps, Traveller};
+use super::{Journey, MOST_STEP_GROWTH, Stepping, Steps, Traveller};
 use crate::math::lanes::{self, F32s, Isa, MOST, Mask, Row};
 use crate::volume::shell::prisms::Prisms;
 
@@ -35,9 +35,6 @@ impl lanes::Work for Measure<'_, '_, '_> {
     }
 }
 
-/// How much deeper a ray's last steps may be than its first; as in `hybrid/shadow.wgsl`.
-const MOST_PATIENCE: f32 = 4.0;
-
 /// Sums optical depth.
 struct Depths<'j> {
     journeys: &'j [Journey],
@@ -60,8 +57,8 @@ impl<I: Isa> Traveller<I> for Depths<'_> {
     }
 
     #[inline(always)]
-    fn patience(&self) -> F32s<I> {
-        (F32s::of(&self.sum) * self.haste + 1.0).min(F32s::splat(MOST_PATIENCE))
+    fn step_scale(&self) -> F32s<I> {
+        (F32s::of(&self.sum) * self.haste + 1.0).min(F32s::splat(MOST_STEP_GROWTH))
     }
 
     #[inline(always)]

@@ -78,9 +78,9 @@ pub struct Steps<I: Isa> {
 pub trait Traveller<I: Isa> {
     /// The next ray, which starts in `lane`; none when all are on their way.
     fn next(&mut self, lane: usize) -> Option<Journey>;
-    /// Factors on the optical depth of the next steps, and up to twice on their length: they may be the longer, the less of what
+    /// Factors on the optical depth of the next steps, up to [`MOST_STEP_GROWTH`], and up to [`MOST_STEP_LENGTHENING`] on their length: they may be the longer, the less of what
     /// they find counts.
-    fn patience(&self) -> F32s<I> {
+    fn step_scale(&self) -> F32s<I> {
         F32s::splat(1.0)
     }
     /// The ray in `lane` is now in prism `triangle`.
@@ -92,13 +92,16 @@ pub trait Traveller<I: Isa> {
 }
 
 /// No march takes more steps: some thousand prisms in a row.
-const MOST_STEPS: u32 = 8192;
+pub const MOST_STEPS: u32 = 8192;
 
-/// How much longer than [`Stepping::layers`] patience makes steps at most; as in `hybrid/march.wgsl`.
-const MOST_LENGTHENED: f32 = 2.0;
+/// How much deeper than [`Stepping::depth`] a ray's last steps may be.
+pub const MOST_STEP_GROWTH: f32 = 4.0;
+
+/// How much longer than [`Stepping::layers`] they may be.
+pub const MOST_STEP_LENGTHENING: f32 = 2.0;
 
 /// How close to a prism's side counts as on it, in barycentric coordinates and shares of the height.
-const ON_SIDE: f32 = 1e-4;
+pub const ON_SIDE: f32 = 1e-4;
 
 /// Follows all rays of `traveller`.
 ///
@@ -231,9 +234,9 @@ fn advance<'v, I: Isa, T: Traveller<I>>(
     let layer_m = j.up_m.length() * (1.0 / volume.layers() as f32);
     let least_m = layer_m * 1e-3;
     let (side, side_m) = next_side(&places, rates, 1.0);
-    let patience = traveller.patience();
-    let depth = patience * stepping.depth;
-    let layers = patience.min(F32s::splat(MOST_LENGTHENED)) * stepping.layers;
+    let scale = traveller.step_scale();
+    let depth = scale * stepping.depth;
+    let layers = scale.min(F32s::splat(MOST_STEP_LENGTHENING)) * stepping.layers;
     let expected_m = F32s::of(&flight.per_depth_m) * depth;
     let longest_m = (layer_m * layers).min(expected_m).max(least_m);
     let mut length_m = longest_m.min(side_m.max(zero)).min(far_m - at_m);

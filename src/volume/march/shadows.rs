@@ -13,18 +13,18 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 /// Optical depth beyond which no light is left.
-const DARK: f32 = 8.0;
+pub const DARK: f32 = 8.0;
 
 /// The same beside an open border: what is seen there lies between the border, where there is no shadow, and the next
 /// stored depth, which must not be cut short.
-const DARK_AT_BORDERS: f32 = 15.0;
+pub const DARK_AT_BORDERS: f32 = 15.0;
 
 /// Steps towards the light. Long ones miss the beginnings of clumps that they step into: by those of four layers, a depth of
 /// one, undercoat was 6 % too bright.
-const TOWARDS_LIGHT: Stepping = Stepping { depth: 0.5, layers: 0.5 };
+pub const TOWARDS_LIGHT: Stepping = Stepping { depth: 0.5, layers: 0.5 };
 
 /// How much longer they become with each optical depth passed: what lies in deep shadow has little light to be wrong about.
-const HASTE: f32 = 0.25;
+pub const HASTE: f32 = 0.25;
 
 /// Optical depth of undercoat, and of guard hair in the mean, between the corners of sub-elements and the key light, filled
 /// prism by prism when first needed.

@@ -25,7 +25,7 @@ use std::time::Instant;
 use walk::{Ray, Rays, Walk};
 
 /// Intervals of height up to the tips.
-const LAYERS: usize = 24;
+pub const LAYERS: usize = 24;
 
 /// Optical depth beyond which no light is left.
 const DARK: f32 = 15.0;

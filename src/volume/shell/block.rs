@@ -4,7 +4,7 @@ use super::subelement;
 use crate::math::lanes::{F32s, Isa, MOST, Row, U32s, Vec3s};
 
 /// The largest value that a byte can hold; 1 is byte 64 exactly.
-pub(super) const LARGEST: f32 = (255.0 / 64.0) * (255.0 / 64.0);
+pub const LARGEST: f32 = (255.0 / 64.0) * (255.0 / 64.0);
 
 /// Values by sub-element and layer: i·layers + i_l. Equation (3) has whole layers one after the other, but a ray goes from
 /// layer to layer over neighbouring sub-elements: a column of 16 layers is a quarter of a cache line.

@@ -1,0 +1,177 @@
+//! Formulas of the shaders that Rust has no other use for, written down from their equations: f64 where that is shorter.
+
+use furrier::data::coat::GAIN_ANGLES_DEG;
+use furrier::data::shell::guards::{LEAST_COSINE, LEAST_EXTINCTION};
+use furrier::math::{DVec2, DVec3, Vec3};
+use furrier::volume::mean;
+use furrier::volume::shell::lattice;
+use furrier::volume::shell::prism::Place;
+use std::f64::consts::PI;
+
+/// (b₁, b₂, t) moved into the prism.
+pub fn inside(at: Vec3) -> Vec3 {
+    let b = Vec3::new(1.0 - at.x - at.y, at.x, at.y).max(Vec3::ZERO);
+    let b = b / b.element_sum();
+    Vec3::new(b.y, b.z, at.z.clamp(0.0, 1.0))
+}
+
+/// The side that a line along `rates` passes first, 3 for top and skin, and after how far.
+pub fn next_side(place: &Place, rates: Vec3) -> (f32, f32) {
+    let b = place.barycentric();
+    let after = |left: f32, rate: f32| if rate < 0.0 { left / -rate } else { f32::INFINITY };
+    let sides = [
+        after(b.x, -rates.x - rates.y),
+        after(b.y, rates.x),
+        after(b.z, rates.y),
+        after(1.0 - place.t, -rates.z).min(after(place.t, rates.z)),
+    ];
+    let first = (0..4).min_by(|&i, &j| sides[i].total_cmp(&sides[j])).unwrap_or(3);
+    (first as f32, sides[first])
+}
+
+/// Optical depths towards the key light at a share of the tips' height: of undercoat, and of other hair. `of_level` gives
+/// undercoat's, guard hair's and other limbs' parts at one of a triangle's columns and a level.
+pub fn mean_depths(of_level: impl Fn(u32, usize) -> Vec3, b: Vec3, share: f32, linear: bool) -> [f32; 2] {
+    let at = share.clamp(0.0, 1.0) * mean::LAYERS as f32;
+    let low = (at as usize).min(mean::LAYERS - 1);
+    let (corners, weights) = lattice::around(1, b);
+    let parts = corners.map(|corner| of_level(corner, low).lerp(of_level(corner, low + 1), at - low as f32));
+    let weighted = |of: &dyn Fn(Vec3) -> f32| (0..3).map(|i| of(parts[i]) * weights[i]).sum::<f32>();
+    // Depth of the hair around goes linearly, or what it lets through does.
+    if linear {
+        let other = -weighted(&|p| (-p.z).exp()).ln();
+        return [weighted(&|p| p.x), weighted(&|p| p.y) + other];
+    }
+    let other = -weighted(&|p| (-p.y - p.z).exp()).ln();
+    [-weighted(&|p| (-p.x - p.y - p.z).exp()).ln() - other, other]
+}
+
+/// How far a ray runs in a slab `slab_m` high that bends away from it by `bend_per_m`: where its height over the bottom, which
+/// falls by `steep`, is 0 (found by halving), or where it turns, by `fall`.
+pub fn path_through_slab(steep: f64, fall: f64, slab_m: f64, bend_per_m: f64) -> f64 {
+    let height_m = |s: f64| slab_m - steep * s + bend_per_m * s * s;
+    let turn_m = if bend_per_m > 0.0 { steep / (2.0 * bend_per_m) } else { 2.0 * slab_m / steep };
+    if height_m(turn_m) > 0.0 {
+        return fall / (2.0 * bend_per_m);
+    }
+    let (mut above, mut below) = (0.0, turn_m);
+    for _ in 0..80 {
+        let middle = 0.5 * (above + below);
+        *(if height_m(middle) > 0.0 { &mut above } else { &mut below }) = middle;
+    }
+    above
+}
+
+/// Mean weight max(0, 2|p| − 1) of fins over edges of every direction ψ, p = sin α cos ψ: by sums.
+pub fn fin_share(cos_view: f64) -> f64 {
+    let sine = (1.0 - cos_view * cos_view).max(0.0).sqrt();
+    let n = 4000;
+    let weight = |i: usize| (2.0 * (sine * ((i as f64 + 0.5) / n as f64 * PI).cos()).abs() - 1.0).max(0.0);
+    (0..n).map(weight).sum::<f64>() / n as f64
+}
+
+/// A fetch: from the first to the last tap, taps, their level, and the level of equal area.
+pub struct Footprint {
+    /// Up to its sign.
+    pub line: DVec2,
+    pub taps: f64,
+    pub level: f64,
+    pub round_level: f64,
+    /// Longer over shorter axis.
+    pub ratio: f64,
+}
+
+/// Of the ellipse Σ x xᵀ over three vectors, on a texture of `size` texels.
+pub fn footprint(vectors: [DVec2; 3], size: f64, mips: f64, most_taps: f64) -> Footprint {
+    let sum = |of: &dyn Fn(DVec2) -> f64| vectors.iter().map(|&v| of(v)).sum::<f64>();
+    let (a, b, c) = (sum(&|v| v.x * v.x), sum(&|v| v.x * v.y), sum(&|v| v.y * v.y));
+    let angle = 0.5 * (2.0 * b).atan2(a - c);
+    let axis = DVec2::from_angle(angle);
+    let along = |d: DVec2| (a * d.x * d.x + 2.0 * b * d.x * d.y + c * d.y * d.y).max(0.0).sqrt();
+    let (major, minor) = (along(axis), along(axis.perp()).max(1.0 / size));
+    let taps = (major / minor - 1e-3).ceil().clamp(1.0, most_taps);
+    let level = |width: f64| (width * size).log2().clamp(0.0, mips - 1.0);
+    Footprint {
+        line: axis * (major - minor).max(0.0),
+        taps,
+        level: level(major.max(minor) / taps),
+        round_level: level((major.max(minor) * minor).sqrt()),
+        ratio: major / minor,
+    }
+}
+
+/// Gain at an angle in degrees.
+pub fn gain(gains: &[f32; 9], degrees: f64) -> f64 {
+    let angles = GAIN_ANGLES_DEG.map(f64::from);
+    let after = (1..8).find(|&i| degrees <= angles[i]).unwrap_or(8);
+    let share = ((degrees - angles[after - 1]) / (angles[after] - angles[after - 1])).clamp(0.0, 1.0);
+    f64::from(gains[after - 1]) * (1.0 - share) + f64::from(gains[after]) * share
+}
+
+/// How much more hair a light meets than at 45° to upright hair. Columns of M; A and A·m; `volume` and |d_z| are guarded.
+pub fn shadow_slant(m: [DVec3; 3], light: DVec3, extinction: f64, tangent: DVec3, volume: f64, steep: f64) -> f64 {
+    let out = |v: DVec3| m[0] * v.x + m[1] * v.y + m[2] * v.z;
+    let size = tangent.length();
+    let stretched = if size > 0.0 { extinction * out(tangent / size).length() } else { extinction };
+    let along = light.dot(out(tangent));
+    (stretched * stretched - along * along).max(0.0).sqrt()
+        / (volume * steep * extinction.max(f64::from(LEAST_EXTINCTION)))
+}
+
+/// Smooth step from 0 at `from` to 1 at `to`.
+pub fn smoothstep(from: f64, to: f64, x: f64) -> f64 {
+    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Share of a light that hair over skin at this cosine to it sees.
+pub fn above_horizon(cos_light: f64) -> f64 {
+    smoothstep(-0.25, 0.2, cos_light)
+}
+
+/// Per channel, what a transmittance becomes by scattering between hairs of this albedo.
+pub fn multiply_scattered(transmittance: f64, albedo: DVec3) -> DVec3 {
+    albedo.map(|a| transmittance.max(1e-6).powf((1.0 - a.min(0.99)).sqrt()))
+}
+
+/// Radiance of hair towards `to_viewer` per irradiance from `to_light`: diffuse by Kajiya and Kay 1989, and the two lobes of
+/// Marschner et al. 2003 that a cylinder's surface and its far side send.
+pub fn scattered(
+    albedo: DVec3,
+    tangent: DVec3,
+    to_viewer: DVec3,
+    to_light: DVec3,
+    direct: f64,
+    diffuse: DVec3,
+) -> DVec3 {
+    let sin_light = (1.0 - tangent.dot(to_light).powi(2)).max(0.0).sqrt();
+    let agreement = tangent.length().clamp(1e-3, 1.0);
+    let t = tangent / agreement;
+    let theta = |to: DVec3| t.dot(to).clamp(-1.0, 1.0).asin();
+    let half = 0.5 * (theta(to_light) + theta(to_viewer));
+    let lobe = |tilt: f64, width: f64| {
+        let variance = width * width + 1.0 - agreement * agreement;
+        (-0.5 * (half - tilt).powi(2) / variance).exp() / (2.0 * PI * variance).sqrt()
+    };
+    let across = |to: DVec3| to - t * t.dot(to);
+    let (a, b) = (across(to_light), across(to_viewer));
+    let cos_phi = a.dot(b) / (a.length() * b.length()).max(1e-4);
+    let azimuth = 0.25 * (0.5 + 0.5 * cos_phi).max(0.0).sqrt();
+    let specular =
+        (DVec3::splat(0.05 * lobe(-0.12, 0.18)) + albedo * (0.08 * lobe(0.18, 0.30))) * (azimuth * sin_light);
+    albedo * diffuse * (0.87 * sin_light / PI) + specular * direct
+}
+
+/// Radiance of skin: Lambert, and a Blinn-Phong lobe of exponent 60 under Schlick's Fresnel term.
+pub fn skin_radiance(albedo: DVec3, normal: DVec3, to_viewer: DVec3, to_light: DVec3, gloss: f64) -> DVec3 {
+    let half = (to_light + to_viewer).normalize();
+    let fresnel = 0.04 + 0.96 * (1.0 - half.dot(to_viewer).max(0.0)).powi(5);
+    let highlight = fresnel * 62.0 / (8.0 * PI) * normal.dot(half).max(0.0).powi(60);
+    (albedo / PI + DVec3::splat(gloss * highlight)) * normal.dot(to_light).max(0.0)
+}
+
+/// The exponent of the shadow of upright hair on skin, whose 45° is stored.
+pub fn skin_slant(cos_light: f64) -> f64 {
+    let slope = (1.0 - cos_light * cos_light).max(0.0).sqrt() / cos_light.abs().max(f64::from(LEAST_COSINE));
+    slope.max(0.3)
+}
