@@ -204,3 +204,40 @@ fn hair_stands_the_same_however_its_texture_lies() {
         assert!(!alike(difference(&plain, &picture)), "another texture passes at {theta}°");
     }
 }
+
+/// Faults in a tile or in how it is looked at that pictures must show.
+#[derive(Clone, Copy, Debug)]
+pub enum Fault {
+    /// Every mip in the scale of the finest.
+    Scale,
+    /// The gain of mips alone.
+    Gain,
+    /// Hair 80° down is taken for 78°.
+    Lean,
+    /// Hair that should be gone is there.
+    Presence,
+}
+
+/// All of them.
+pub const PLANTED: [Fault; 4] = [Fault::Scale, Fault::Gain, Fault::Lean, Fault::Presence];
+
+/// What the comparison says of a fault: the sound law against the faulty one, both on the CPU.
+pub fn planted(fault: Fault) -> (f32, f32) {
+    let (sound, mut faulty) = (tile(), tile());
+    let between = Look { tiles: 2.83, ..Look::new(20.0, 70.0, 15.0) };
+    let (look, other) = match fault {
+        Fault::Scale | Fault::Gain => (between, between),
+        Fault::Lean => (Look::new(80.0, 190.0, 80.0), Look::new(80.0, 190.0, 78.0)),
+        Fault::Presence => {
+            let gone = Look { length: 0.006, ..Look::new(40.0, 100.0, 20.0) };
+            (gone, Look { length: 0.02, ..gone })
+        }
+    };
+    match fault {
+        Fault::Scale => faulty.shells.extinction_scales_per_m.fill(sound.shells.extinction_scales_per_m[0]),
+        Fault::Gain => faulty.shells.gains[1..].iter_mut().flatten().for_each(|gain| *gain *= 1.2),
+        Fault::Lean | Fault::Presence => {}
+    }
+    let pixels = on_cpu(&faulty, &other).iter().map(|&alpha| [0.0, 0.0, 0.0, alpha]).collect();
+    difference(&on_cpu(&sound, &look), &Picture { size: [PIXELS; 2], pixels })
+}

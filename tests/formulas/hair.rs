@@ -1,7 +1,11 @@
 //! Light in hair, noise, hashes, packing: what the kernels know of one hair or one layer.
 
+<<<<<<< HEAD
 use crate::lanes::simplex;
 use super::{COUNT, Worst, on_device, on_sphere, open, random};
+=======
+use super::{COUNT, Worst, hold, on_device, on_sphere, open, random};
+>>>>>>> cfa8e9f (Planted faults for formulas, constants, mips and guards; what the law decides is written down)
 use crate::scenes::{self, Grown};
 use furrier::fur::undercoat::{Pattern, Undercoat};
 use furrier::gpu::{Binding, Source, Text};
@@ -87,6 +91,11 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
 
 #[test]
 fn shaders_and_rust_agree_on_light_in_hair() {
+    hold(formulas(&SHARED));
+}
+
+/// Compares all; gives what is off.
+pub fn formulas(shared: &[Source]) -> Vec<String> {
     let (guard, undercoat) = scenes::mink();
     let mesh = scenes::grid(2, 2, |u, v| Vec3::new(u, 0.0, -v) * 0.01);
     let grown = Grown::new(mesh, &guard, &undercoat, Vec3::X, 35.0, 3);
@@ -98,7 +107,7 @@ fn shaders_and_rust_agree_on_light_in_hair() {
     let gpu = open();
     let inputs = random(2, 7);
     let buffer = gpu.buffer("scene", &[uniform], wgpu::BufferUsages::UNIFORM);
-    let outputs = on_device(&gpu, &SHARED, MAIN, &[(&[Binding::Uniform], vec![buffer])], &inputs, OUTPUTS);
+    let outputs = on_device(&gpu, shared, MAIN, &[(&[Binding::Uniform], vec![buffer])], &inputs, OUTPUTS);
 
     let hair = &scene.scattering;
     let kajiya = KajiyaKay::<f32>::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent);
@@ -141,7 +150,9 @@ fn shaders_and_rust_agree_on_light_in_hair() {
         close("along the hair", out[7].w, (((100.0 * b.x) as usize % points) as f32 + b.y) / (points - 1) as f32);
         let byte = (256.0 * b.x) as u32 as f32 / 255.0;
         close("stored value", out[8].w, byte * byte * LARGEST);
-        assert!((out[9].w - f32::from(code(20.0 * b.x - 2.0))).abs() <= 1.0, "code of {}", 20.0 * b.x - 2.0);
+        // Rounded one way or the other.
+        let byte = f32::from(code(20.0 * b.x - 2.0));
+        close("code of a value", if (out[9].w - byte).abs() == 1.0 { byte } else { out[9].w }, byte);
         let cell = ((b.truncate() - 0.5) * 2000.0).floor();
         let key = cell.to_array().iter().fold(0, |key, &c| combine(key, c as i64 as u64));
         assert_eq!([out[4].x, out[4].y], [unit_f32(key), unit_f32(combine(key, 1))], "hash of {cell}");
@@ -159,5 +170,5 @@ fn shaders_and_rust_agree_on_light_in_hair() {
         let near = |got: Vec4, expected: Vec3| (got.truncate() - expected).abs().max_element() < 6e-4;
         assert!(near(out[9], colours) && near(out[10], b.truncate() * 2.0 - 1.0), "packing of input {i}");
     }
-    worst.hold(1e-4);
+    worst.faults(1e-4)
 }

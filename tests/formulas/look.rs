@@ -1,6 +1,6 @@
 //! Light on hair and skin as the runtime draws them: formula by formula, and skin and fins as whole pixels.
 
-use super::{COUNT, Worst, coat, on_device, on_sphere, open, random, reference};
+use super::{COUNT, Worst, coat, hold, on_device, on_sphere, open, random, reference};
 use crate::coats;
 use furrier::data::coat::{FinEdge, Tile};
 use furrier::data::image::linear_from_srgb;
@@ -74,8 +74,7 @@ fn shaders_and_rust_agree_on_light_on_hair_and_skin() {
         let skin = reference::skin_radiance(albedo, normal, viewer, light, given[2].w.into());
         worst.note_all(i, "skin", out[2].truncate(), skin.as_vec3());
     }
-    worst.hold(2e-4);
-    rough.hold(2e-3);
+    hold([worst.faults(2e-4), rough.faults(2e-3)].concat());
 }
 
 /// A picture of 4 × 4 pixels along `ray`, a square of 2 m around the origin.
