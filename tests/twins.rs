@@ -10,7 +10,8 @@ use furrier::math::{Mat2, Mat3, Mat4, Vec2, Vec3, Vec4};
 use furrier::runtime::gpu::Renderer;
 use furrier::runtime::{Frame, Picture, Show};
 
-const PIXELS: u32 = 128;
+/// Along the edges of every picture here.
+pub const PIXELS: u32 = 128;
 const SHELLS: Show = Show { skin: false, shells: true, fins: false };
 
 /// Parallel rays through the plane z = 0, and how hair stands there.
@@ -45,25 +46,24 @@ impl Look {
         let (sin, cos) = self.lean_deg.to_radians().sin_cos();
         Vec3::new(sin, 0.0, cos) * self.length
     }
+}
 
-    /// One pixel for each of [`PIXELS`] parts of the picture's edge.
-    fn frame(&self, edge_m: f32) -> Frame {
-        let direction = self.direction();
-        let slope = direction / direction.z;
-        let scale = 2.0 / (edge_m * self.tiles);
-        let clip = Mat4::from_cols(
-            Vec4::new(scale, 0.0, 0.0, 0.0),
-            Vec4::new(0.0, scale, 0.0, 0.0),
-            Vec4::new(-slope.x * scale, -slope.y * scale, -1.0, 0.0),
-            Vec4::new(0.0, 0.0, 0.5, 1.0),
-        );
-        Frame {
-            clip_from_world: clip,
-            eye: Vec4::from((-direction, 0.0)),
-            size: [PIXELS; 2],
-            lights: vec![],
-            ambient: Vec3::ZERO,
-        }
+/// Parallel rays along `direction` through `edge_m` of the plane z = 0, one pixel for each of [`PIXELS`] parts of it.
+pub fn oblique(direction: Vec3, edge_m: f32) -> Frame {
+    let slope = direction / direction.z;
+    let scale = 2.0 / edge_m;
+    let clip = Mat4::from_cols(
+        Vec4::new(scale, 0.0, 0.0, 0.0),
+        Vec4::new(0.0, scale, 0.0, 0.0),
+        Vec4::new(-slope.x * scale, -slope.y * scale, -1.0, 0.0),
+        Vec4::new(0.0, 0.0, 0.5, 1.0),
+    );
+    Frame {
+        clip_from_world: clip,
+        eye: Vec4::from((-direction, 0.0)),
+        size: [PIXELS; 2],
+        lights: vec![],
+        ambient: Vec3::ZERO,
     }
 }
 
@@ -100,7 +100,8 @@ fn on_gpu(renderer: &Renderer<'_>, tiles: &[Tile], look: &Look) -> Picture {
     plane.tint.iter_mut().for_each(|tint| tint.w = look.density);
     let mut scene = plane.scene(tiles);
     scene.furs[0].axes = vec![Vec3::X; plane.uv.len()];
-    renderer.prepare(&scene).unwrap().draw(&look.frame(tiles[0].edge_m), SHELLS).unwrap().picture
+    let view = oblique(look.direction(), look.tiles * tiles[0].edge_m);
+    renderer.prepare(&scene).unwrap().draw(&view, SHELLS).unwrap().picture
 }
 
 /// Mean and root mean square difference.

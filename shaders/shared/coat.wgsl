@@ -87,7 +87,8 @@ fn ray_in_tile(at: Frame, world: vec3<f32>) -> Ray {
     let direction = at.tile_from_world * world;
     let size = length(direction);
     let z = max(abs(direction.z), LEAST_COSINE * size);
-    return Ray(vec3(direction.xy, select(-z, z, direction.z > 0.0)), z / size, abs(direction.z));
+    let steep = vec3(direction.xy, select(-z, z, direction.z > 0.0));
+    return Ray(steep, z / length(steep), abs(direction.z));
 }
 
 // What a texel of the medium holds.

@@ -119,7 +119,7 @@ impl Case {
         let first = around(u[0].w);
         let second = (normal.cross(first) + 0.4 * (u[1].y - 0.5) * first) * (mirrored * (0.6 + 0.8 * u[1].z));
         let lean_rad = match kind % 8 {
-            1 => std::f32::consts::FRAC_PI_2 * (1.0 - 0.05 * u[1].w),
+            1 => std::f32::consts::FRAC_PI_2 * (0.998 - 0.05 * u[1].w),
             _ => 1.4 * u[1].w,
         };
         let length = if kind % 8 == 0 { 0.0 } else { 0.1 + u[2].x };

@@ -50,7 +50,9 @@ pub fn mean_depths(of_level: impl Fn(u32, usize) -> Vec3, b: Vec3, share: f32, l
 /// falls by `steep`, is 0 (found by halving), or where it turns, by `fall`.
 pub fn path_through_slab(steep: f64, fall: f64, slab_m: f64, bend_per_m: f64) -> f64 {
     let height_m = |s: f64| slab_m - steep * s + bend_per_m * s * s;
-    let turn_m = if bend_per_m > 0.0 { steep / (2.0 * bend_per_m) } else { 2.0 * slab_m / steep };
+    // Where there is a bottom to meet, it is no farther than twice as far as on a plane.
+    let plane_m = 2.0 * slab_m / steep;
+    let turn_m = if bend_per_m > 0.0 { plane_m.min(steep / (2.0 * bend_per_m)) } else { plane_m };
     if height_m(turn_m) > 0.0 {
         return fall / (2.0 * bend_per_m);
     }

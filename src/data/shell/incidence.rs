@@ -27,7 +27,7 @@ impl Incidence {
         let rows = [y_axis.cross(z_axis), z_axis.cross(x_axis), x_axis.cross(y_axis)];
         let determinant = skin_from_tile.determinant();
         let volume = determinant.abs().max(LEAST_VOLUME * rows[2].length() * z_axis.length()).max(LEAST_BULK);
-        let scale = 1.0_f32.copysign(determinant) / volume;
+        let scale = if determinant >= 0.0 { 1.0 } else { -1.0 } / volume;
         let [x, y, z] = rows.map(|row| row * scale);
         let d = Mat3::from_cols(x, y, z).transpose() * direction;
         let fall = d.z.abs();
