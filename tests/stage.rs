@@ -160,15 +160,17 @@ fn bare_skin_looks_the_same_in_render_and_view() {
 
         let [render, view] = folder.both("out.png", &options).map(|path| image::open(path).unwrap().to_rgba8());
         let opaque = || render.pixels().zip(view.pixels()).filter(|(a, b)| a.0[3] == 255 && b.0[3] == 255);
-        let most = opaque().flat_map(|(a, b)| (0..3).map(|c| a.0[c].abs_diff(b.0[c]))).max().unwrap();
-        assert!(opaque().count() > 5000 && most <= 2, "{camera:?}: colours differ by {most}");
+        let most_colour = opaque().flat_map(|(a, b)| (0..3).map(|c| a.0[c].abs_diff(b.0[c]))).max().unwrap();
+        assert!(opaque().count() > 5000 && most_colour <= 2, "{camera:?}: colours differ by {most_colour}");
 
-        // Distance along the ray: the same surface.
-        let depth = |film: &BTreeMap<String, Vec<f32>>, i: usize| film["Z"][i];
-        for i in (0..covered[0].len()).filter(|&i| films.iter().all(|film| film["A"][i] == 1.0)) {
-            let (a, b) = (depth(&films[0], i), depth(&films[1], i));
-            assert!((a - b).abs() < 0.02 * a, "{camera:?}, pixel {i}: {a} and {b} m away");
-        }
+        // Distance along the ray: the same surface. `view` has the nearest of a pixel's samples, which counts beside outlines.
+        let whole = |i: &usize| films.iter().all(|film| film["A"][*i] == 1.0);
+        let off = |i: usize| (films[1]["Z"][i] / films[0]["Z"][i] - 1.0).abs();
+        let mut off: Vec<f32> = (0..covered[0].len()).filter(whole).map(off).collect();
+        off.sort_by(f32::total_cmp);
+        let [half, most, all] = [off.len() / 2, off.len() * 98 / 100, off.len() - 1].map(|i| off[i]);
+        println!("{camera:?}: distances differ by {half}, {most}, {all}; colours by {most_colour}");
+        assert!(half < 0.002 && most < 0.01 && all < 0.1, "{camera:?}: distances differ by {half}, {most}, {all}");
         let channels: Vec<&str> = films[1].keys().map(String::as_str).collect();
         assert_eq!(channels, ["A", "B", "G", "R", "Z"]);
     }
