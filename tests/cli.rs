@@ -1,6 +1,6 @@
 //! The real binary: help, exit codes, what goes to which stream.
 
-use crate::common::furrier_path;
+use crate::common::{furrier_path, skipped};
 use assert_cmd::Command;
 use predicates::prelude::*;
 
@@ -250,9 +250,7 @@ fn without_an_adapter_viewing_names_the_package_and_baking_works() {
 #[test]
 fn a_screenshot_shows_something_and_options_that_cannot_be_are_refused() {
     if furrier::gpu::adapters().is_empty() {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "no graphics adapter");
-        eprintln!("left out: no graphics adapter");
-        return;
+        return skipped("no graphics adapter");
     }
     let folder = tempfile::tempdir().unwrap();
     let (furry, picture) = (baked(folder.path()), folder.path().join("out.png"));

@@ -5,6 +5,7 @@ use furrier::data::camera::Camera;
 use furrier::stage::camera::Orbit;
 use furrier::stage::light;
 use furrier::volume::scene::Lighting;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// The camera at an angle that frames what has grown.
@@ -17,16 +18,30 @@ pub fn studio(camera: &Camera) -> Lighting {
     Lighting::new(&light::studio(camera))
 }
 
-/// The folder of meshes too large for this repository, beside the checkout: `None`, with the reason printed, where it
-/// is missing, so that a test which needs it can be left out. With `CI=true` missing is a failure.
+/// Says that the running test, or a part of it, is left out for this reason. The reason is printed even where the test
+/// passes, and goes into the file that the environment variable FURRIER_TEST_SKIPS names, which `tests/run` lists at its
+/// end. With `CI=true` it is a failure.
+pub fn skipped(reason: &str) {
+    assert!(std::env::var("CI").as_deref() != Ok("true"), "{reason}");
+    let thread = std::thread::current();
+    let line = format!("{}: {reason}\n", thread.name().unwrap_or("a test"));
+    // Not eprintln: what a test prints that way is shown only if it fails.
+    write!(std::io::stderr(), "left out: {line}").expect("it can be said");
+    if let Some(list) = std::env::var_os("FURRIER_TEST_SKIPS") {
+        let file = std::fs::OpenOptions::new().append(true).create(true).open(list);
+        file.and_then(|mut file| file.write_all(line.as_bytes())).expect("the list of skips can be written");
+    }
+}
+
+/// The folder of meshes too large for this repository, beside the checkout: `None`, with the reason said, where it is
+/// missing, so that a test which needs it can be left out.
 pub fn shared() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/assets");
-    if folder.is_dir() {
-        return Some(folder);
+    if !folder.is_dir() {
+        skipped(&format!("{} is missing", folder.display()));
+        return None;
     }
-    assert!(std::env::var("CI").as_deref() != Ok("true"), "{} is missing", folder.display());
-    eprintln!("left out: {} is missing", folder.display());
-    None
+    Some(folder)
 }
 
 /// The binary under test.

@@ -1,6 +1,6 @@
 //! Outputs against the extension's JSON schema and the Khronos validator.
 
-use crate::common::shared;
+use crate::common::{shared, skipped};
 use crate::made::coat_for;
 use furrier::asset::coat::{NAME, dress};
 use furrier::asset::{self, Asset, Fallback, write_coat};
@@ -63,12 +63,11 @@ fn the_schema_sees_planted_faults() {
     }
 }
 
-/// Severity and code of each issue, counted; none, with the reason printed, where the validator is not installed.
+/// Severity and code of each issue, counted; none, with the reason said, where the validator is not installed.
 fn issues(files: &[PathBuf]) -> Option<Vec<BTreeMap<(u64, String), usize>>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/node");
     if !folder.join("node_modules/gltf-validator").is_dir() {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "CI needs `npm ci` in tests/node");
-        eprintln!("left out: the Khronos validator is not installed; run `npm ci` in tests/node");
+        skipped("the Khronos validator is not installed; run `npm ci` in tests/node");
         return None;
     }
     let output = Command::new("node").arg(folder.join("validate.mjs")).args(files).output().expect("node runs");
