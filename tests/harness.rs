@@ -351,3 +351,9 @@ fn twins_tell_faults_between_mips_and_at_guards() {
         assert!(!alike(found), "{fault:?} passes: {found:?}");
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn kills_tell_a_file_that_is_written_in_place() {
+    assert!(crate::outputs::torn_by_kills(true) > 0);
+}

@@ -8,14 +8,18 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// What the child of these tests writes: a length that no single write call covers, all of one byte.
-const LENGTH: usize = 1 << 23;
+const LENGTH: usize = 1 << 24;
 
 /// Not a test of its own: run by others as a process that can be killed or starved.
 #[test]
 fn child_that_writes() {
     let Ok(path) = std::env::var("FURRIER_TEST_WRITES") else { return };
-    for round in 0..200_u8 {
-        if let Err(error) = write::whole(Path::new(&path), &vec![round; LENGTH], &[]) {
+    let straight = std::env::var_os("FURRIER_TEST_STRAIGHT").is_some();
+    for round in 0..=u8::MAX {
+        let bytes = vec![round; LENGTH];
+        if straight {
+            std::fs::write(&path, &bytes).expect("written");
+        } else if let Err(error) = write::whole(Path::new(&path), &bytes, &[]) {
             println!("refused: {error}");
             return;
         }
@@ -49,20 +53,71 @@ fn a_full_disk_ends_in_an_error_and_leaves_the_old_file() {
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing else is left behind");
 }
 
+/// Where in its work a killed process was, by what it left behind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Moment {
+    /// No file of its own.
+    Before,
+    /// A file with a part of the bytes.
+    Within,
+    /// A file with all of them, its first or a later one.
+    After,
+}
+
+/// Sizes of the files in `folder`; one that is gone meanwhile is left out.
+fn sizes(folder: &Path) -> Vec<usize> {
+    let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry"));
+    entries.filter_map(|entry| entry.metadata().ok()).map(|metadata| metadata.len() as usize).collect()
+}
+
+/// Kills children that write, `straight` to the output or as the product does, until three have died at each moment.
+/// Gives how many left an output that is neither old nor whole.
+///
+/// No kill needs to come at a given time: the child is watched, and what it leaves behind says when it died.
+pub fn torn_by_kills(straight: bool) -> usize {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out.glb");
+    let (mut torn, mut seen, mut tries) = (0, [0; 3], 0);
+    while let Some(aim) = [Moment::Before, Moment::Within, Moment::After].into_iter().find(|&m| seen[m as usize] < 3) {
+        tries += 1;
+        assert!(tries < 300, "no child died {aim:?} its write, of {tries}: {seen:?}");
+        std::fs::read_dir(folder.path()).expect("a folder").for_each(|entry| {
+            std::fs::remove_file(entry.expect("an entry").path()).expect("removed");
+        });
+        std::fs::write(&out, b"old").expect("written");
+        let mut command = child("", &out);
+        if straight {
+            command.env("FURRIER_TEST_STRAIGHT", "1");
+        }
+        let mut process = command.spawn().expect("it runs");
+        let reached = || match aim {
+            Moment::Before => true,
+            Moment::Within => sizes(folder.path()).iter().any(|size| (4..LENGTH).contains(size)),
+            Moment::After => sizes(folder.path()).contains(&LENGTH),
+        };
+        while !reached() {
+            assert!(process.try_wait().expect("a child").is_none(), "it ended before it was killed {aim:?} its write");
+        }
+        process.kill().expect("it can be killed");
+        process.wait().expect("it ends");
+        let left = sizes(folder.path());
+        let moment = match () {
+            () if left.iter().any(|size| *size != 3 && *size < LENGTH) => Moment::Within,
+            () if left.contains(&LENGTH) => Moment::After,
+            () => Moment::Before,
+        };
+        seen[moment as usize] += 1;
+        let bytes = std::fs::read(&out).expect("the old file or a new one");
+        torn += usize::from(bytes != b"old" && !is_whole(&bytes));
+    }
+    println!("{seen:?} children died before, within and after a write, {torn} of them left half a file");
+    torn
+}
+
 #[cfg(unix)]
 #[test]
 fn a_killed_process_leaves_no_half_written_output() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().join("out.glb");
-    for millis in [40, 55, 70, 90, 120] {
-        let mut process = child("", &out).spawn().expect("it runs");
-        std::thread::sleep(std::time::Duration::from_millis(millis));
-        process.kill().expect("it can be killed");
-        process.wait().expect("it ends");
-        if let Ok(bytes) = std::fs::read(&out) {
-            assert!(is_whole(&bytes), "{} bytes after {millis} ms", bytes.len());
-        }
-    }
+    assert_eq!(torn_by_kills(false), 0);
     assert!(!is_whole(&[1, 2]) && !is_whole(&[0; 100]), "the check sees what is not whole");
 }
 
