@@ -357,3 +357,16 @@ fn twins_tell_faults_between_mips_and_at_guards() {
 fn kills_tell_a_file_that_is_written_in_place() {
     assert!(crate::outputs::torn_by_kills(true) > 0);
 }
+
+#[test]
+fn depths_of_a_passage_tell_shares_that_are_not_complementary() {
+    use crate::regions::{DEPTHS_ALIKE, depths_off};
+    for factor in [0.0, 0.9, 1.1] {
+        let off = depths_off(&|scene| {
+            for fur in scene.furs.iter_mut().filter(|fur| fur.over_last) {
+                fur.tint.to_mut().iter_mut().for_each(|tint| tint.w *= factor);
+            }
+        });
+        assert!(off > DEPTHS_ALIKE, "{factor}: {off}");
+    }
+}

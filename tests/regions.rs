@@ -9,7 +9,7 @@ use furrier::gpu::{Choice, Gpu};
 use furrier::math::{Mat4, Vec3, Vec4};
 use furrier::preset::Preset;
 use furrier::runtime::gpu::Renderer;
-use furrier::runtime::{Frame, Show};
+use furrier::runtime::{DrawList, Frame, Picture, Show};
 use furrier::viewer::stage;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -53,12 +53,12 @@ fn baked(folder: &Path) -> (asset::Asset, Coat) {
     asset::read_coat(&out).unwrap()
 }
 
-/// Coverage of shells by columns of a picture of the whole plane, seen along a ray 40° off its normal, across the ramp.
-fn columns(gpu: &Gpu, asset: &asset::Asset, coat: &Coat) -> Vec<f32> {
+/// A square of the plane `edge_m` wide along x, seen along a ray 40° off its normal, across the ramp.
+fn view(edge_m: f32) -> Frame {
     let (sin, cos) = 40.0_f32.to_radians().sin_cos();
     let direction = Vec3::new(0.0, -cos, -sin);
-    let scale = 2.0 / 0.16;
-    let view = Frame {
+    let scale = 2.0 / edge_m;
+    Frame {
         clip_from_world: Mat4::from_cols(
             Vec4::new(scale, 0.0, 0.0, 0.0),
             Vec4::new(0.0, scale * direction.z / direction.y, -1.0, 0.0),
@@ -69,7 +69,12 @@ fn columns(gpu: &Gpu, asset: &asset::Asset, coat: &Coat) -> Vec<f32> {
         size: [PIXELS; 2],
         lights: vec![],
         ambient: Vec3::ONE,
-    };
+    }
+}
+
+/// Coverage of shells by columns of a picture of the whole plane, seen along a ray 40° off its normal, across the ramp.
+fn columns(gpu: &Gpu, asset: &asset::Asset, coat: &Coat) -> Vec<f32> {
+    let view = view(0.16);
     let textures = stage::textures(asset).unwrap();
     let pose = asset.rest_pose().unwrap();
     let scene = stage::scene(asset, coat, &textures, &pose);
@@ -143,6 +148,93 @@ fn coverage_rises_from_one_tile_to_the_other() {
     let seen = columns(&gpu, &asset, &faulty);
     println!("planted {seen:.3?}");
     assert!(!rises(&seen), "half a passage passes");
+}
+
+/// What the product draws where the passage's second tile has weight `w` everywhere, after `fault`: shells alone, 40° off the
+/// plane's normal.
+fn passage(gpu: &Gpu, asset: &asset::Asset, worn: &CoatPrimitive, coat: &Coat, fault: &Fault<'_>) -> Picture {
+    let coat = Coat { primitives: vec![worn.clone()], ..coat.clone() };
+    let textures = stage::textures(asset).unwrap();
+    let mut scene = stage::scene(asset, &coat, &textures, &asset.rest_pose().unwrap());
+    fault(&mut scene);
+    let show = Show { skin: false, shells: true, fins: false };
+    // Well inside the strip that the passage is.
+    let view = Frame { size: [PIXELS / 2; 2], ..view(0.06) };
+    let renderer = Renderer::new(gpu, &coat.tiles, 1).unwrap();
+    renderer.prepare(&scene).unwrap().draw(&view, show).unwrap().picture
+}
+
+/// A change to what is drawn.
+type Fault<'a> = dyn Fn(&mut DrawList<'_>) + 'a;
+
+fn at_weight(worn: &CoatPrimitive, w: f32) -> CoatPrimitive {
+    let mut worn = worn.clone();
+    worn.blend.as_mut().unwrap().weight.fill(w);
+    worn
+}
+
+/// How far optical depths of a passage, as drawn after `fault`, are from (1 − w) of the first tile's and w of the second's,
+/// each drawn alone: the greatest mean size of the difference over the weights, as a share of the mean depth.
+pub fn depths_off(fault: &Fault<'_>) -> f32 {
+    let folder = tempfile::tempdir().unwrap();
+    let (asset, coat) = baked(folder.path());
+    let gpu = Gpu::open(&Choice::Auto).unwrap();
+    let worn = &coat.primitives[1];
+    let depths = |worn: &CoatPrimitive, fault: &Fault<'_>| -> Vec<f32> {
+        passage(&gpu, &asset, worn, &coat, fault).pixels.iter().map(|p| -(1.0 - p[3]).ln()).collect()
+    };
+    let alone = CoatPrimitive { blend: None, ..worn.clone() };
+    let into = worn.blend.as_ref().unwrap().tile;
+    let scale = coat.tiles[worn.tile].edge_m / coat.tiles[into].edge_m;
+    let uv = worn.uv.iter().map(|uv| *uv * scale).collect();
+    let [first, second] = [alone.clone(), CoatPrimitive { tile: into, uv, ..alone }].map(|w| depths(&w, &|_| ()));
+    let n = first.len() as f32;
+    let off = |w: f32| {
+        let drawn = depths(&at_weight(worn, w), fault);
+        let expected = first.iter().zip(&second).map(|(a, b)| (1.0 - w) * a + w * b);
+        let (mut off, mut sum) = (0.0, 0.0);
+        for (drawn, expected) in drawn.iter().zip(expected) {
+            (off, sum) = (off + (drawn - expected).abs() / n, sum + expected / n);
+        }
+        println!("weight {w}: depth {sum:.3} in the mean, {off:.4} off");
+        off / sum
+    };
+    [0.0, 0.25, 0.5, 0.75, 1.0].map(off).into_iter().fold(0.0, f32::max)
+}
+
+/// What a shell hides that is too clear to be drawn, and eight bits of opacity.
+pub const DEPTHS_ALIKE: f32 = 0.01;
+
+#[test]
+fn between_two_tiles_the_optical_depth_is_their_mean_by_weight() {
+    let off = depths_off(&|_| ());
+    assert!(off < DEPTHS_ALIKE, "{off}");
+}
+
+/// A passage from a tile into the same tile, at weights of one half: how much more of the second's hair is seen than of the
+/// first's, over both. Of mixed hair it is as much.
+fn second_prevails(fault: &Fault<'_>) -> f32 {
+    let folder = tempfile::tempdir().unwrap();
+    let (asset, coat) = baked(folder.path());
+    let gpu = Gpu::open(&Choice::Auto).unwrap();
+    let mut worn = at_weight(&coat.primitives[1], 0.5);
+    worn.tile = worn.blend.as_ref().unwrap().tile;
+    let [first, second] = [0, 1].map(|black| {
+        let drawn = passage(&gpu, &asset, &worn, &coat, &|scene| {
+            fault(scene);
+            scene.furs[1 - black].tint.to_mut().iter_mut().for_each(|tint| *tint = Vec4::new(0.0, 0.0, 0.0, tint.w));
+        });
+        drawn.pixels.iter().map(|p| p[0]).sum::<f32>()
+    });
+    (second - first) / (second + first)
+}
+
+#[test]
+fn two_tiles_on_one_shell_take_turns_in_which_is_above() {
+    let in_turn = second_prevails(&|_| ());
+    let one_above = second_prevails(&|scene| scene.furs[1].over_last = false);
+    println!("the second prevails by {in_turn:.4} in turn, {one_above:.4} if always above");
+    assert!(in_turn.abs() < 0.01 && one_above > 0.02, "{in_turn}, {one_above}");
 }
 
 /// How much of what is seen is the second tile's hair: what mixed hair would show less what slabs drawn over one another do, mean
