@@ -370,3 +370,13 @@ fn depths_of_a_passage_tell_shares_that_are_not_complementary() {
         assert!(off > DEPTHS_ALIKE, "{factor}: {off}");
     }
 }
+
+#[test]
+fn the_fringe_tells_that_fins_are_gone() {
+    use crate::silhouette::{Fins, RELIEF, near};
+    let [strands, _, ours] = near(Fins::Lost);
+    assert!(ours.miscovers(&strands).is_some(), "{ours:?}");
+    // Where shells stand in for them, coverage tells nothing.
+    let [strands, shells, ours] = near(Fins::LeftOut);
+    assert!(ours.miscovers(&strands).is_none() && ours.relief_over(&shells) < RELIEF, "{ours:?}");
+}

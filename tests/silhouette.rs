@@ -24,31 +24,86 @@ const RADIUS_M: f32 = 0.04;
 const PIXELS: usize = 128;
 const EYE: Vec3 = Vec3::new(0.06, 0.1, 0.35);
 
-/// Mean alpha over rings from the skin's outline to one hair length (`height_m`) beyond it, inner to outer, and over all.
-fn rings(alpha: &[f32], height_m: f32) -> [f32; 5] {
-    let mut sums = [(0.0, 0.0); 5];
-    let rays = Rays::Perspective { view: scenes::view(&camera(), [PIXELS; 2]), supersampling: 1 };
-    for (i, a) in alpha.iter().enumerate() {
-        let ray = rays.ray(i % PIXELS, i / PIXELS, 0);
-        let closest = EYE - ray.direction * EYE.dot(ray.direction);
-        let at = (closest.length() - RADIUS_M) / height_m;
-        if (0.0..1.0).contains(&at) {
-            for slot in [(at * 4.0) as usize, 4] {
-                sums[slot].0 += a;
-                sums[slot].1 += 1.0;
-            }
-        }
-    }
-    sums.map(|(sum, count)| sum / count)
+/// Rings from the skin's outline to one hair length beyond it.
+const RINGS: usize = 4;
+
+/// Which fins are drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fins {
+    /// All.
+    Drawn,
+    /// None, though shells leave them their share.
+    Lost,
+    /// None, and shells keep the whole coat.
+    LeftOut,
 }
 
+/// A picture's fringe. Lists go from the inner ring to the outer one.
+#[derive(Debug)]
+pub struct Fringe {
+    /// Mean alpha by ring.
+    alpha: [f32; RINGS],
+    /// Mean alpha over all of them.
+    whole: f32,
+    /// How far pixels stand out from their neighbours along the outline, root mean square by ring: single hairs do, a haze
+    /// does not.
+    relief: [f32; RINGS],
+}
+
+impl Fringe {
+    /// Of a picture by `camera`, which looks from [`EYE`]; the outline runs along its rows where relief is to mean anything.
+    fn of(alpha: &[f32], camera: &Camera, height_m: f32) -> Self {
+        let (mut sums, mut squares, mut counts) = ([0.0; RINGS], [0.0; RINGS], [0.0; RINGS]);
+        let rays = Rays::Perspective { view: scenes::view(camera, [PIXELS; 2]), supersampling: 1 };
+        for (i, a) in alpha.iter().enumerate().filter(|(i, _)| (4..PIXELS - 4).contains(&(i % PIXELS))) {
+            let ray = rays.ray(i % PIXELS, i / PIXELS, 0);
+            let closest = EYE - ray.direction * EYE.dot(ray.direction);
+            let at = (closest.length() - RADIUS_M) / height_m;
+            if (0.0..1.0).contains(&at) {
+                let ring = (at * RINGS as f32) as usize;
+                let around = (1..=4).map(|k| alpha[i - k] + alpha[i + k]).sum::<f32>() / 8.0;
+                sums[ring] += a;
+                squares[ring] += (a - around).powi(2);
+                counts[ring] += 1.0;
+            }
+        }
+        let per_ring = |of: [f32; RINGS]| std::array::from_fn(|ring| of[ring] / counts[ring]);
+        Self {
+            alpha: per_ring(sums),
+            whole: sums.iter().sum::<f32>() / counts.iter().sum::<f32>(),
+            relief: per_ring(squares).map(f32::sqrt),
+        }
+    }
+
+    /// Where coverage is not the strands', if anywhere.
+    pub fn miscovers(&self, strands: &Self) -> Option<String> {
+        let far = |ring: &usize| (self.alpha[*ring] - strands.alpha[*ring]).abs() > 0.08;
+        if (self.whole - strands.whole).abs() > 0.05 {
+            return Some(format!("{} for {}", self.whole, strands.whole));
+        }
+        (0..RINGS).find(far).map(|i| format!("ring {i} of {RINGS}: {} for {}", self.alpha[i], strands.alpha[i]))
+    }
+
+    /// Relief where hair neither fills a pixel nor is gone, over that of `other`.
+    pub fn relief_over(&self, other: &Self) -> f32 {
+        self.relief[1..].iter().sum::<f32>() / other.relief[1..].iter().sum::<f32>()
+    }
+}
+
+/// The whole sphere.
 fn camera() -> Camera {
     scenes::looking(EYE, Vec3::ZERO, Vec3::Y, 18.0)
 }
 
-fn view() -> Frame {
+/// The sphere's upper outline, near enough for single hairs to show.
+fn close_up() -> Camera {
+    let up = (Vec3::Y - EYE.normalize() * EYE.normalize().y).normalize();
+    scenes::looking(EYE, up * (RADIUS_M + 0.005), Vec3::Y, 5.0)
+}
+
+fn frame(camera: &Camera) -> Frame {
     Frame {
-        clip_from_world: camera().clip_from_world(furrier::math::DVec3::ZERO, 1.0, 0.05, 1.0).as_mat4(),
+        clip_from_world: camera.clip_from_world(furrier::math::DVec3::ZERO, 1.0, 0.05, 1.0).as_mat4(),
         eye: Vec4::from((EYE, 1.0)),
         size: [PIXELS as u32; 2],
         lights: vec![],
@@ -56,8 +111,8 @@ fn view() -> Frame {
     }
 }
 
-/// Coverage of the rings by strands, and by the runtime showing `show`, for each.
-fn measured(gpu: &Gpu, fibres: [&Fibre; 2], lean_rad: f32, shows: &[Show]) -> ([f32; 5], Vec<[f32; 5]>) {
+/// The fringe of strands seen by `camera`, and of the runtime's picture with each of `fins`.
+fn measured(camera: &Camera, fibres: [&Fibre; 2], lean_rad: f32, fins: &[Fins]) -> (Fringe, Vec<Fringe>) {
     let hair = TileHair::grow(fibres[0], fibres[1], 8e-3, 7);
     let recipe = TileRecipe {
         preset: "test".into(),
@@ -87,40 +142,67 @@ fn measured(gpu: &Gpu, fibres: [&Fibre; 2], lean_rad: f32, shows: &[Show]) -> ([
     };
     let [guard, undercoat] = [0, 1].map(|i| grow::skin::grow(fibres[i], &mesh, &fields, 3 + i as u64));
     let scene = Geometry { guard: Some(&guard), undercoat: Some(&undercoat), skin: Some(&mesh), ..Default::default() };
-    let rays = Rays::Perspective { view: scenes::view(&camera(), [PIXELS; 2]), supersampling: 3 };
-    let strands = rings(&Caster::new(scene).render(&rays, DepthRange::ALL).alpha, height_m);
-    let renderer = Renderer::new(gpu, &tiles, 2).unwrap();
-    let ours = shows.iter().map(|&show| {
-        let drawn = renderer.prepare(&furred.scene(&tiles)).unwrap().draw(&view(), show).unwrap();
-        rings(&drawn.picture.pixels.iter().map(|p| p[3]).collect::<Vec<_>>(), height_m)
+    let rays = Rays::Perspective { view: scenes::view(camera, [PIXELS; 2]), supersampling: 3 };
+    let strands = Fringe::of(&Caster::new(scene).render(&rays, DepthRange::ALL).alpha, camera, height_m);
+    let gpu = Gpu::open(&Choice::Auto).unwrap();
+    let renderer = Renderer::new(&gpu, &tiles, 2).unwrap();
+    let ours = fins.iter().map(|fins| {
+        let mut list = furred.scene(&tiles);
+        if *fins == Fins::Lost {
+            list.furs[0].fins = Default::default();
+        }
+        let show = Show { fins: *fins != Fins::LeftOut, ..Show::default() };
+        let picture = renderer.prepare(&list).unwrap().draw(&frame(camera), show).unwrap().picture;
+        Fringe::of(&picture.pixels.iter().map(|p| p[3]).collect::<Vec<_>>(), camera, height_m)
     });
     (strands, ours.collect())
 }
 
+fn thinned(mut fibre: Fibre, factor: f32) -> Fibre {
+    fibre.density_per_m2 *= factor;
+    fibre
+}
+
+fn guard(factor: f32) -> Fibre {
+    thinned(Fibre::guard(&Guard::default(), &Colour::default(), 1.0), factor)
+}
+
+fn undercoat(factor: f32) -> Fibre {
+    thinned(Fibre::undercoat(&Undercoat::default(), &Colour::default(), 1.0), factor)
+}
+
 #[test]
 fn the_fringe_covers_what_strands_cover() {
-    let gpu = Gpu::open(&Choice::Auto).unwrap();
-    let colour = Colour::default();
-    let thinned = |mut fibre: Fibre, factor: f32| {
-        fibre.density_per_m2 *= factor;
-        fibre
-    };
-    let guard = |factor| thinned(Fibre::guard(&Guard::default(), &colour, 1.0), factor);
-    let undercoat = |factor| thinned(Fibre::undercoat(&Undercoat::default(), &colour, 1.0), factor);
-    let shows = [Show::default(), Show { fins: false, ..Show::default() }];
     for (name, fibres, lean_rad) in [
         ("upright guard hair", [&guard(0.5), &undercoat(0.0)], 0.0),
         ("leaning guard hair", [&guard(0.5), &undercoat(0.0)], 0.6),
         ("leaning undercoat", [&guard(0.0), &undercoat(0.1)], 0.3),
     ] {
-        let (strands, ours) = measured(&gpu, fibres, lean_rad, &shows);
-        println!("{name}: strands {strands:.3?}, shells and fins {:.3?}, shells alone {:.3?}", ours[0], ours[1]);
-        for ours in &ours {
-            assert!((ours[4] - strands[4]).abs() < 0.05, "{name}: {} for {}", ours[4], strands[4]);
-            for ring in 0..4 {
-                let (a, b) = (ours[ring], strands[ring]);
-                assert!((a - b).abs() < 0.08, "{name}, ring {ring} of 4: {a} for {b}");
-            }
-        }
+        let (strands, ours) = measured(&camera(), fibres, lean_rad, &[Fins::Drawn, Fins::LeftOut]);
+        println!(
+            "{name}: strands {:.3?}, with fins {:.3?}, without {:.3?}",
+            strands.alpha, ours[0].alpha, ours[1].alpha
+        );
+        ours.iter().for_each(|ours| assert_eq!(ours.miscovers(&strands), None, "{name}"));
     }
+}
+
+/// Leaning guard hair from near by: the fringe of strands, of shells alone, and of the coat with `fins`.
+pub fn near(fins: Fins) -> [Fringe; 3] {
+    let (strands, ours) = measured(&close_up(), [&guard(0.5), &undercoat(0.0)], 0.6, &[Fins::LeftOut, fins]);
+    println!("strands {strands:.3?}\nshells {:.3?}\n{fins:?} {:.3?}", ours[0], ours[1]);
+    let [shells, ours] = ours.try_into().unwrap();
+    [strands, shells, ours]
+}
+
+/// What fins add to the relief of shells alone, at least.
+pub const RELIEF: f32 = 1.2;
+
+/// Shells alone cover as much: what fins bring to an outline is that single hairs stand out there.
+#[test]
+fn fins_give_the_fringe_relief_and_keep_its_coverage() {
+    let [strands, shells, ours] = near(Fins::Drawn);
+    assert_eq!(ours.miscovers(&strands), None);
+    let (gained, whole) = (ours.relief_over(&shells), ours.relief_over(&strands));
+    assert!(gained > RELIEF && whole < 1.0, "{gained} of what shells have alone, {whole} of what strands have");
 }
