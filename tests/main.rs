@@ -58,4 +58,5 @@ mod twins;
 mod undercoat;
 mod validator;
 mod viewer;
+mod witness;
 mod xatlas;

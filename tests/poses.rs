@@ -9,7 +9,7 @@ fn plane() -> Asset {
 }
 
 /// `sample:plane` with one animation channel on its node.
-fn animated(path: &str, width: usize, interpolation: &str, times: &[f32], values: &[f32]) -> Asset {
+pub fn animated(path: &str, width: usize, interpolation: &str, times: &[f32], values: &[f32]) -> Asset {
     let mut document = plane().document;
     let floats = |document: &mut asset::Document, values: &[f32], kind: &str| {
         let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
