@@ -422,3 +422,20 @@ fn the_witness_sees_one_weight_of_a_baked_file() {
     let found = crate::witness::output_departures(&document.to_glb().unwrap(), "baked.glb");
     assert!(found.iter().any(|fault| fault.contains("joints and weights")), "{found:?}");
 }
+
+#[test]
+fn a_fin_that_is_lost_doubled_or_too_thin_is_named() {
+    let (asset, coat) = crate::fins::baked("cylinder");
+    assert_eq!(crate::fins::fault(&asset, &coat), None);
+    let faults: [fn(&mut Vec<furrier::data::coat::FinEdge>); 4] = [
+        |fins| fins.clear(),
+        |fins| fins.truncate(fins.len() - 1),
+        |fins| fins.push(fins[0]),
+        |fins| fins.iter_mut().for_each(|fin| fin.thickness *= 0.99),
+    ];
+    for plant in faults {
+        let mut faulty = coat.clone();
+        plant(&mut faulty.primitives[0].fins);
+        assert!(crate::fins::fault(&asset, &faulty).is_some());
+    }
+}

@@ -19,6 +19,7 @@ mod crossing;
 mod defocus;
 mod docs;
 mod field;
+mod fins;
 mod formulas;
 mod hard_renders;
 mod harness;
