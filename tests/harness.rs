@@ -439,3 +439,18 @@ fn a_fin_that_is_lost_doubled_or_too_thin_is_named() {
         assert!(crate::fins::fault(&asset, &faulty).is_some());
     }
 }
+
+#[test]
+fn what_strands_let_through_tells_a_mip_whose_gains_are_left_out() {
+    let (tile, truth) = crate::gains::tile_and_truth();
+    for mip in 0..tile.shells.gains.len() {
+        let mut faulty = tile.clone();
+        faulty.shells.gains[mip] = [1.0; 9];
+        let off = crate::gains::off(&faulty, &truth, mip);
+        assert!(off > crate::gains::BOUND, "mip {mip}: {off}");
+        if mip == 2 {
+            let drawn = crate::gains::off_on_device(&faulty, &truth, mip);
+            assert!(drawn > crate::gains::BOUND, "as drawn, mip {mip}: {drawn}");
+        }
+    }
+}

@@ -21,6 +21,7 @@ mod docs;
 mod field;
 mod fins;
 mod formulas;
+mod gains;
 mod hard_renders;
 mod harness;
 mod hostile;
