@@ -454,3 +454,10 @@ fn what_strands_let_through_tells_a_mip_whose_gains_are_left_out() {
         }
     }
 }
+
+#[test]
+fn the_reference_sees_hair_without_its_shadow_in_the_mean() {
+    let difference =
+        crate::oracle::changed_against_reference(&crate::scenes::studio(), |prepared| prepared.mean = None);
+    assert_eq!(crate::oracle::fault(&difference), Some("bias"));
+}

@@ -3,7 +3,7 @@
 use crate::scenes::{self, Grown};
 use crate::undercoat::{Cylinders, depth_of_volume, directions, on_level_skin};
 use furrier::data::film::Film;
-use furrier::hybrid::{self, draw};
+use furrier::hybrid;
 use furrier::math::hash::Stream;
 use furrier::math::{DVec3, Vec3};
 use furrier::metrics::compare::{Difference, Light, compare};
@@ -65,9 +65,17 @@ fn by_reference(size: [usize; 2], grown: &Grown, lighting: &Lighting, lines: usi
 
 /// The renderer's picture under `lighting` against the reference under the usual light.
 pub fn against_reference(lighting: &Lighting) -> Difference {
+    changed_against_reference(lighting, |_| ())
+}
+
+/// The same after a change to what the renderer made ready.
+pub fn changed_against_reference(lighting: &Lighting, change: impl Fn(&mut hybrid::Prepared<'_>)) -> Difference {
     let grown = thin();
     let film = by_reference(SIZE, &grown, &scenes::studio(), 2, 1);
-    let drawn = draw(&grown.scene(), lighting, &scenes::camera(0.35), &hybrid::Settings::best(SIZE)).unwrap().film;
+    let scene = grown.scene();
+    let mut prepared = hybrid::prepare(&scene, lighting, &hybrid::Settings::best(SIZE)).unwrap();
+    change(&mut prepared);
+    let drawn = prepared.draw(&scenes::camera(0.35)).unwrap().film;
     let difference = compare(&Light::from(&film), &Light::from(&drawn)).unwrap();
     println!("{difference:?}");
     difference
