@@ -14,7 +14,7 @@ use furrier::fur::groom::{Colour, Guard, Undercoat};
 use furrier::gpu::{Choice, Gpu};
 use furrier::math::{Mat3, Vec2, Vec3};
 use furrier::runtime::Show;
-use furrier::runtime::cpu::{Stack, View};
+use furrier::data::shell::{Incidence, Stack};
 use furrier::runtime::gpu::Renderer;
 
 /// Between the angles at which gains are stored, degrees.
@@ -67,7 +67,7 @@ pub fn off(tile: &Tile, truth: &[f64; 4], mip: usize) -> f64 {
     let each = ANGLES_DEG.iter().zip(truth).map(|(&theta, truth)| {
         let mut sum = 0.0;
         for direction in directions(theta) {
-            let view = View::new(direction, Mat3::IDENTITY, pixel);
+            let view = Incidence::new(direction, Mat3::IDENTITY, pixel);
             let at = |i: u32| Vec2::new((i % 40) as f32 + 0.5, (i / 40) as f32 + 0.5) / 40.0;
             sum += (0..1600).map(|i| f64::from(1.0 - stack.coverage(at(i), &view))).sum::<f64>();
         }
@@ -101,7 +101,7 @@ pub fn off_on_device(tile: &Tile, truth: &[f64; 4], mip: usize) -> f64 {
     let each = ANGLES_DEG.iter().zip(truth).map(|(&theta, truth)| {
         let through = |direction| {
             let frame = twins::oblique(direction, seen_m);
-            1.0 - renderer.draw(&plane.scene(tiles), &frame, show).unwrap().picture.coverage()
+            1.0 - renderer.prepare(&plane.scene(tiles)).unwrap().draw(&frame, show).unwrap().picture.coverage()
         };
         (directions(theta).map(through).sum::<f64>() / 5.0 - truth).abs()
     });

@@ -6,7 +6,7 @@ use furrier::bake::picture::{self as depicted, Only, PictureRequest};
 use furrier::data::camera::Camera;
 use furrier::data::film::Film;
 use furrier::data::image::Image8;
-use furrier::data::light::Directional;
+use furrier::data::light::{Directional, Point, Spot};
 use furrier::fur::groom::Clump;
 use furrier::gpu::{Choice, Gpu};
 use furrier::hybrid::device::{Device, Drawn, with_fallback};
@@ -105,6 +105,18 @@ fn simplified_blending_under_many_lights_looks_the_same_on_both() {
         lighting.fill.push(Directional::travelling(towards, Vec3::new(0.8, 1.0, 1.4)).unwrap().into());
     }
     hold(&grown.scene(), &lighting, &scenes::camera(0.35), &settings);
+}
+
+#[test]
+fn lamps_and_cones_look_the_same_on_both() {
+    let grown = scene(60.0, true);
+    let key = Point::new(Vec3::new(-0.1, 0.15, 0.1), Vec3::new(0.25, 0.3, 0.2), Some(0.4)).unwrap();
+    let over = Point::new(Vec3::new(0.08, 0.12, -0.02), Vec3::new(0.1, 0.05, 0.2), None).unwrap();
+    let spot = Spot::new(over, Vec3::new(-0.3, -1.0, 0.1), 0.2, 0.5).unwrap();
+    let lighting = Lighting { key: key.into(), fill: vec![spot.into()], fill_on_undercoat: true, ..scenes::studio() };
+    hold(&grown.scene(), &lighting, &scenes::camera(0.35), &small());
+    let swapped = Lighting { key: spot.into(), fill: vec![key.into()], ..lighting };
+    hold(&grown.scene(), &swapped, &scenes::camera(0.35), &small());
 }
 
 #[test]

@@ -29,6 +29,7 @@ mod hybrid;
 mod hybrid_twins;
 mod lanes;
 mod laws;
+mod lights;
 mod made;
 mod meshes;
 mod metrics;

@@ -70,8 +70,17 @@ pub fn against_reference(lighting: &Lighting) -> Difference {
 
 /// The same after a change to what the renderer made ready.
 pub fn changed_against_reference(lighting: &Lighting, change: impl Fn(&mut hybrid::Prepared<'_>)) -> Difference {
+    compared(&scenes::studio(), lighting, change)
+}
+
+/// The renderer's picture against the reference, both under `lighting`.
+pub fn under(lighting: &Lighting) -> Difference {
+    compared(lighting, lighting, |_| ())
+}
+
+fn compared(usual: &Lighting, lighting: &Lighting, change: impl Fn(&mut hybrid::Prepared<'_>)) -> Difference {
     let grown = thin();
-    let film = by_reference(SIZE, &grown, &scenes::studio(), 2, 1);
+    let film = by_reference(SIZE, &grown, usual, 2, 1);
     let scene = grown.scene();
     let mut prepared = hybrid::prepare(&scene, lighting, &hybrid::Settings::best(SIZE)).unwrap();
     change(&mut prepared);

@@ -13,7 +13,8 @@ use furrier::runtime::gpu::Renderer;
 use furrier::runtime::{Frame, Picture, Show};
 use std::path::Path;
 
-fn look(eye: Vec3, size: [u32; 2]) -> Frame {
+/// Looks at the origin from `eye`.
+pub fn look(eye: Vec3, size: [u32; 2]) -> Frame {
     let camera = Camera { eye: eye.as_dvec3().into(), target: [0.0; 3], up: [0.0, 1.0, 0.0], vfov_deg: 30.0 };
     let (far, aspect) = (f64::from(eye.length()) * 2.0, f64::from(size[0]) / f64::from(size[1]));
     Frame {

@@ -1,8 +1,7 @@
 // Lights from infinitely far away, from a point, and from a point in a cone: src/data/light.rs.
 #define_import_path furrier::light
 
-// Points nearer to a light than this, m, are lit as at this distance.
-const NEAREST_M: f32 = 1e-6;
+#import furrier::constants::NEAREST_M
 
 struct Light {
     // The unit vector to a light from infinitely far away, the position of any other, m.

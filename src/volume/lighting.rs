@@ -5,6 +5,10 @@ use crate::data::light::Light;
 use crate::data::mesh::Mesh;
 use crate::math::Vec3;
 
+/// Distance of a key light from the middle of the skin's bounds, in diagonals of these, below which pictures are more than 5 %
+/// off for following its shadow along one direction.
+const NEAREST_DIAGONALS: f32 = 1.0;
+
 impl Lighting {
     /// All lights, the key first.
     pub fn all(&self) -> impl Iterator<Item = &Light> {
@@ -16,5 +20,18 @@ impl Lighting {
     pub fn shadow_direction(&self, skin: &Mesh) -> Vec3 {
         let (low_m, high_m) = skin.bounds_m();
         self.key.at(0.5 * (low_m + high_m)).to_light
+    }
+
+    /// What a person should know of how these lights light `skin`, one sentence each.
+    pub fn notes(&self, skin: &Mesh) -> Vec<String> {
+        let (low_m, high_m) = skin.bounds_m();
+        let near = self.key.position_m().map(|p| p.distance(0.5 * (low_m + high_m)) / skin.diagonal_m());
+        let told = |diagonals: f32| {
+            format!(
+                "the first light is {diagonals:.2} diagonals of the skin from its middle; its shadow in the fur, followed \
+                 along one direction, is right from {NEAREST_DIAGONALS} on"
+            )
+        };
+        near.filter(|&diagonals| diagonals < NEAREST_DIAGONALS).map(told).into_iter().collect()
     }
 }

@@ -7,6 +7,7 @@ use super::{COUNT, Worst, on_device, on_sphere, open, random};
 use super::{COUNT, Worst, hold, on_device, on_sphere, open, random};
 >>>>>>> cfa8e9f (Planted faults for formulas, constants, mips and guards; what the law decides is written down)
 use crate::scenes::{self, Grown};
+use furrier::data::light::{Directional, Light, Point, Spot};
 use furrier::fur::undercoat::{Pattern, Undercoat};
 use furrier::gpu::{Binding, Source, Text};
 use furrier::hybrid::Settings;
@@ -22,7 +23,7 @@ use furrier::volume::shell::block::{LARGEST, code};
 use furrier::volume::shell::subelement;
 
 /// Vectors per input.
-const OUTPUTS: usize = 12;
+const OUTPUTS: usize = 14;
 
 /// Evaluates everything at inputs of eight numbers in [0, 1).
 pub const MAIN: Source = Source {
@@ -33,6 +34,7 @@ pub const MAIN: Source = Source {
 #import furrier::scene::{scene, Strand}
 #import furrier::fur_light::{angles_of, guard_lobes, kajiya_kay, above_height, above_both, slant_depth, sky_depth, terminator,
     arc_cosine, cosine_of, shadow_power, cos_of}
+#import furrier::light::{Light, light_at}
 #import furrier::noise::simplex
 #import furrier::hash::{combine, unit, wide_of}
 #import furrier::prism::{subelement, subelement_centre}
@@ -59,7 +61,7 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let light = on_sphere(a.zw);
     let eye = on_sphere(b.xy);
     let angles = angles_of(hair, light, eye);
-    let first = 12u * i;
+    let first = 14u * i;
     outputs[first] = vec4(guard_lobes(angles), angles.sin_in);
     outputs[first + 1u] = vec4(kajiya_kay(angles), terminator(light, eye), sky_depth(b.z));
     outputs[first + 2u] = vec4(
@@ -83,7 +85,14 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let packed = pack_faces(a.xyz, 2.0 * b.xyz - 1.0);
     outputs[first + 9u] = vec4(unpack_albedo(packed), f32(code_value(20.0 * b.x - 2.0)));
     outputs[first + 10u] = vec4(unpack_tangent(packed), cos_of(2.0 * b.x - 1.0));
+    let cone_scale = 1.0 / (0.05 + 0.2 * b.w);
+    let lamp = Light(
+        a.xyz - 0.5, a.w, vec3(1.0, 2.0, 3.0), select(1.0, 0.0, i % 8u == 0u), eye, cone_scale, 1.0 - cone_scale * b.z,
+    );
+    let arriving = light_at(lamp, 0.3 * vec3(b.z, b.w, -b.z));
     outputs[first + 11u] = vec4(root_of(Strand(vec3(0.0), 0u, 0.5 * a.xy, 0u, 0.0)), 0.0);
+    outputs[first + 12u] = vec4(arriving.to_light, 0.0);
+    outputs[first + 13u] = vec4(arriving.irradiance, 0.0);
 }
 ",
     ),
@@ -139,6 +148,19 @@ pub fn formulas(shared: &[Source]) -> Vec<String> {
         close("hair above", out[4].z, above[0] + above[1]);
         close("slanted depth", out[2].z, slant_depth(b.z, light, eye, hair));
         close("opacity", out[2].w, guard.opacity_at(b.w));
+        let (at, strength) = (a.truncate() - 0.5, Vec3::new(1.0, 2.0, 3.0));
+        let lamp = if i % 8 == 0 {
+            Light::Directional(Directional { to_light: at, irradiance: strength })
+        } else {
+            let point = Point { position_m: at, intensity: strength, range_m: Some(1.0 / a.w) };
+            let outer_cos = b.z - 0.05 - 0.2 * b.w;
+            Light::Spot(Spot { point, direction: eye, inner_cos: b.z, outer_cos })
+        };
+        let arriving = lamp.at(Vec3::new(b.z, b.w, -b.z) * 0.3);
+        for k in 0..3 {
+            close("direction to a light", out[12][k], arriving.to_light[k]);
+            close("irradiance", out[13][k], arriving.irradiance[k]);
+        }
         let p = (a.truncate() - 0.5) * 40.0;
         close("noise", out[3].x, simplex(p, 0));
         close("noise", out[3].y, simplex(p, 1));

@@ -145,7 +145,7 @@ fn skin_is_lit_as_its_formulas_say() {
         };
         let frame = frame(ray);
         let list = DrawList { skins: vec![skin], furs: vec![], tiles: &tiles };
-        let pixel = renderer.draw(&list, &frame, Show::default()).unwrap().picture.pixels[5];
+        let pixel = renderer.prepare(&list).unwrap().draw(&frame, Show::default()).unwrap().picture.pixels[5];
         let albedo = base.as_dvec3() * if density > 0.0 { colour(SKIN) } else { DVec3::ONE };
         // What is seen of hair's shadow on skin counts up to 1.5.
         let depth = f64::from(-unorm(SKIN[3]).ln() * density).min(1.5);
@@ -187,7 +187,7 @@ fn fins_are_as_opaque_and_as_bright_as_their_formulas_say() {
         };
         let frame = frame(ray);
         let list = DrawList { skins: vec![], furs: vec![fur], tiles: &tiles };
-        let pixel = renderer.draw(&list, &frame, Show::default()).unwrap().picture.pixels[5];
+        let pixel = renderer.prepare(&list).unwrap().draw(&frame, Show::default()).unwrap().picture.pixels[5];
         let (across, along) = ((end - start).cross(offset).normalize(), (end - start).normalize());
         let facing = across.dot(ray).abs();
         let weight = (2.0 * facing - 1.0).max(0.0) / facing;

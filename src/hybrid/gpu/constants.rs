@@ -2,6 +2,7 @@
 
 use super::items::{AT_BORDER, LINEAR, NOTHING};
 use super::layout::Totals;
+use crate::data::light::NEAREST_M;
 use crate::gpu::Constant::{self, F32, U32};
 use crate::hybrid::strands::{LEAST_SHARE, LOOKS, MOST_BEND};
 use crate::math::table::Table;
@@ -19,8 +20,9 @@ const fn slot(offset: usize) -> u32 {
 }
 
 /// The module `furrier::constants` of the kernels.
-pub const CONSTANTS: [Constant; 27] = [
+pub const CONSTANTS: [Constant; 28] = [
     F32("PI", std::f32::consts::PI),
+    F32("NEAREST_M", NEAREST_M),
     U32("NOTHING", NOTHING),
     U32("AT_BORDER", AT_BORDER),
     U32("LINEAR", LINEAR),

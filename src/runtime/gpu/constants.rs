@@ -1,5 +1,6 @@
 //! Constants that shaders of the runtime share with Rust.
 
+use crate::data::light::NEAREST_M;
 use crate::data::coat::GAIN_ANGLES_DEG;
 use crate::data::shell::guards::{
     FADE_BELOW, INVISIBLE, LEAST_AXIS, LEAST_BULK, LEAST_CLEAR, LEAST_COSINE, LEAST_DIRECTION, LEAST_EXTINCTION,
@@ -10,8 +11,9 @@ use crate::runtime::draw_list::MAX_LIGHTS;
 use crate::volume::scene::DEEPEST_HAIR;
 
 /// The module `furrier::constants` of the runtime's shaders.
-pub const CONSTANTS: [Constant; 17] = [
+pub const CONSTANTS: [Constant; 18] = [
     F32("PI", std::f32::consts::PI),
+    F32("NEAREST_M", NEAREST_M),
     U32("MAX_LIGHTS", MAX_LIGHTS as u32),
     F32s("GAIN_ANGLES_DEG", &GAIN_ANGLES_DEG),
     F32("LEAST_VOLUME", LEAST_VOLUME),
