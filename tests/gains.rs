@@ -9,12 +9,12 @@ use furrier::coat::shells::ShellParameters;
 use furrier::coat::tile::{TileRecipe, bake};
 use furrier::data::coat::Tile;
 use furrier::data::ray::DepthRange;
+use furrier::data::shell::{Incidence, Stack};
 use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::groom::{Colour, Guard, Undercoat};
 use furrier::gpu::{Choice, Gpu};
 use furrier::math::{Mat3, Vec2, Vec3};
 use furrier::runtime::Show;
-use furrier::data::shell::{Incidence, Stack};
 use furrier::runtime::gpu::Renderer;
 
 /// Between the angles at which gains are stored, degrees.

@@ -140,8 +140,6 @@ fn structs_of_kernels_lie_as_in_rust() {
                 guard_albedo,
                 skin_factor,
                 taper,
-                to_key,
-                unused,
                 undercoat_ramp,
                 guard_ramp,
                 guard_kind,

@@ -130,7 +130,7 @@ fn strays_on_a_hat(b: Vec3, span: f32, shadow: impl Fn(&MeanShadow<'_>, &Scene<'
     };
     let grown = depicted::Grown::new(&request).unwrap();
     let scene = grown.scene();
-    let to_light = studio(&framing(&grown, 35.0, 20.0, 1.0, [1, 1])).shadow_direction(scene.skin);
+    let to_light = studio(&framing(&grown, 35.0, 20.0, 1.0, [1, 1])).mean_direction(scene.skin);
     let normals = scene.skin.smooth_normals();
     let medium = Medium::new(&scene, &normals, None).unwrap();
     let skin = Skin::new(scene.skin);

@@ -64,9 +64,6 @@ struct Scene {
     guard_albedo: f32,
     skin_factor: vec3<f32>,
     taper: f32,
-    // Unit vector along which the key light's shadow is followed.
-    to_key: vec3<f32>,
-    unused: f32,
 
     undercoat_ramp: array<vec4<f32>, 3>,
     guard_ramp: array<vec4<f32>, 3>,

@@ -144,6 +144,7 @@ impl Render {
         grown.notes.iter().for_each(|note| console.note(note));
         let camera = stage.camera(&grown.subject)?;
         let lighting = Lighting::new(&stage.lit(&grown.subject, &camera)?);
+        lighting.notes(grown.scene().skin).iter().for_each(|note| console.note(note));
         self.check_lens()?;
         let mut drawn = match self.quality {
             Quality::Reference => self.reference(&grown, &lighting, &camera, size)?,

@@ -27,8 +27,6 @@ pub struct Prepared<'a> {
     pub lobes: Lobes<f32>,
     /// What fills the shell; none where no undercoat grows.
     pub content: Option<Content<'a>>,
-    /// The unit vector along which the key light's shadow is followed.
-    pub to_key: Vec3,
     /// The key light's shadow in the mean; none where nothing grows.
     pub mean: Option<MeanShadow<'a>>,
     /// What this took.
@@ -43,14 +41,13 @@ pub fn prepare<'a>(scene: &Scene<'a>, lighting: &'a Lighting, settings: &Setting
     let start = Instant::now();
     let lobes = Lobes::new(&scene.scattering.guard)?;
     let normals = scene.skin.smooth_normals();
-    let to_key = lighting.shadow_direction(scene.skin);
     let (content, mean) = rayon::join(
         || Content::new(scene, &normals, settings.resolution),
-        || MeanShadow::new(scene, to_key, settings.shadow_span),
+        || MeanShadow::new(scene, lighting.mean_direction(scene.skin), settings.shadow_span),
     );
     let mut steps = Steps::default();
     steps.add_since("shell", start, content.as_ref().map_or(0, |content| content.shell.bytes()));
-    Ok(Prepared { scene: *scene, lighting, settings: *settings, normals, lobes, content, to_key, mean, steps })
+    Ok(Prepared { scene: *scene, lighting, settings: *settings, normals, lobes, content, mean, steps })
 }
 
 impl Prepared<'_> {

@@ -1,12 +1,12 @@
-//! Where the key light's shadow is followed to.
+//! Which way shadows of lights go.
 
 use super::scene::Lighting;
 use crate::data::light::Light;
 use crate::data::mesh::Mesh;
 use crate::math::Vec3;
 
-/// Distance of a key light from the middle of the skin's bounds, in diagonals of these, below which pictures are more than 5 %
-/// off for following its shadow along one direction.
+/// Distance of a key light from the middle of the skin's bounds, in diagonals of these, below which pictures are more than 0.05 of
+/// FLIP off, as the shadow of guard hair is followed along one direction.
 const NEAREST_DIAGONALS: f32 = 1.0;
 
 impl Lighting {
@@ -15,9 +15,9 @@ impl Lighting {
         std::iter::once(&self.key).chain(&self.fill)
     }
 
-    /// The unit vector along which the key light's shadow is followed everywhere: towards the light, from the middle of the
-    /// skin's bounds where it is not infinitely far away (`docs/steps/shade.md`).
-    pub fn shadow_direction(&self, skin: &Mesh) -> Vec3 {
+    /// The unit vector along which the key light's shadow in the mean is followed everywhere: towards the light, from the middle
+    /// of the skin's bounds where it is not infinitely far away (`docs/steps/shade.md`).
+    pub fn mean_direction(&self, skin: &Mesh) -> Vec3 {
         let (low_m, high_m) = skin.bounds_m();
         self.key.at(0.5 * (low_m + high_m)).to_light
     }
@@ -28,8 +28,8 @@ impl Lighting {
         let near = self.key.position_m().map(|p| p.distance(0.5 * (low_m + high_m)) / skin.diagonal_m());
         let told = |diagonals: f32| {
             format!(
-                "the first light is {diagonals:.2} diagonals of the skin from its middle; its shadow in the fur, followed \
-                 along one direction, is right from {NEAREST_DIAGONALS} on"
+                "the first light is {diagonals:.2} diagonals of the skin from its middle: nearer than {NEAREST_DIAGONALS:.0}, \
+                 its shadow in the fur is off (docs/steps/shade.md)"
             )
         };
         near.filter(|&diagonals| diagonals < NEAREST_DIAGONALS).map(told).into_iter().collect()

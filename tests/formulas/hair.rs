@@ -1,11 +1,7 @@
 //! Light in hair, noise, hashes, packing: what the kernels know of one hair or one layer.
 
-<<<<<<< HEAD
-use crate::lanes::simplex;
-use super::{COUNT, Worst, on_device, on_sphere, open, random};
-=======
 use super::{COUNT, Worst, hold, on_device, on_sphere, open, random};
->>>>>>> cfa8e9f (Planted faults for formulas, constants, mips and guards; what the law decides is written down)
+use crate::lanes::simplex;
 use crate::scenes::{self, Grown};
 use furrier::data::light::{Directional, Light, Point, Spot};
 use furrier::fur::undercoat::{Pattern, Undercoat};

@@ -28,7 +28,7 @@ pub fn draw(prepared: &Prepared<'_>, camera: &Camera) -> Result<Picture> {
     let start = Instant::now();
     let view = prepared.settings.view(camera, prepared.scene.skin.origin_m)?;
     let volume = prepared.volume(&view);
-    let shadows = volume.as_ref().map(|v| Shadows::new(v, prepared.mean.as_ref(), prepared.to_key));
+    let shadows = volume.as_ref().map(|v| Shadows::new(v, prepared.mean.as_ref(), prepared.lighting.key));
     let mut picture = Picture::default();
     picture.steps.add_since("shell", start, 0);
     picture.film = Pass::new(prepared, shadows.as_ref(), view).run(&mut picture);

@@ -1,7 +1,7 @@
 //! Constants that shaders of the runtime share with Rust.
 
-use crate::data::light::NEAREST_M;
 use crate::data::coat::GAIN_ANGLES_DEG;
+use crate::data::light::NEAREST_M;
 use crate::data::shell::guards::{
     FADE_BELOW, INVISIBLE, LEAST_AXIS, LEAST_BULK, LEAST_CLEAR, LEAST_COSINE, LEAST_DIRECTION, LEAST_EXTINCTION,
     LEAST_RISE, LEAST_UV_AREA, LEAST_VOLUME, MOST_SPREAD, MOST_TAPS,

@@ -3,7 +3,7 @@
 use super::columns::{Columns, Site};
 use super::volume::Volume;
 use super::{Journey, Start, Stepping};
-use crate::math::Vec3;
+use crate::data::light::Light;
 use crate::volume::mean::MeanShadow;
 use crate::volume::shell::block;
 use crate::volume::shell::lattice::{self, Lattice};
@@ -33,7 +33,7 @@ pub struct Shadows<'a> {
     /// What throws them.
     pub volume: &'a Volume<'a>,
     mean: Option<&'a MeanShadow<'a>>,
-    to_light: Vec3,
+    key: Light,
     lattices: Vec<OnceLock<Lattice>>,
     columns: Columns,
     /// Time spent filling, summed over threads, ns.
@@ -41,11 +41,12 @@ pub struct Shadows<'a> {
 }
 
 impl<'a> Shadows<'a> {
-    /// Of undercoat, and of the other hair of the same scene in the mean; none filled yet.
-    pub fn new(volume: &'a Volume<'a>, mean: Option<&'a MeanShadow<'a>>, to_light: Vec3) -> Self {
+    /// Of undercoat, each depth towards where `key` is seen from there, and of the other hair of the same scene in the mean;
+    /// none filled yet.
+    pub fn new(volume: &'a Volume<'a>, mean: Option<&'a MeanShadow<'a>>, key: Light) -> Self {
         let shell = volume.shell();
         let lattices = std::iter::repeat_with(OnceLock::new).take(shell.skin.triangles.len()).collect();
-        Self { volume, mean, to_light, lattices, columns: Columns::new(shell), spent_ns: AtomicU64::new(0) }
+        Self { volume, mean, key, lattices, columns: Columns::new(shell), spent_ns: AtomicU64::new(0) }
     }
 
     /// Bytes filled.
@@ -86,7 +87,7 @@ impl<'a> Shadows<'a> {
             let place = Place { b: [site.b.y, site.b.z], t: t_of(level) };
             let start = Start { at_m: 0.0, triangle: site.triangle, place };
             let origin_m = shell.prism(site.triangle).jacobian(&place).at_m;
-            Journey { origin_m, direction: self.to_light, start, far_m: f32::INFINITY }
+            Journey { origin_m, direction: self.key.at(origin_m).to_light, start, far_m: f32::INFINITY }
         };
         let journeys: Vec<Journey> = (0..levels)
             .flat_map(|level| waiting.iter().map(move |&i| (i, level)))
