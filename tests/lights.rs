@@ -11,6 +11,7 @@ use furrier::hybrid::{Settings, draw};
 use furrier::math::{DVec3, Vec3};
 use furrier::runtime::gpu::Renderer;
 use furrier::runtime::{Frame, Show};
+use furrier::stage::background::Background;
 use furrier::stage::tone::{Development, develop};
 use furrier::volume::scene::{Lighting, Scene};
 
@@ -28,7 +29,8 @@ pub fn lamp(grown: &Grown, diagonals: f32) -> Lighting {
 /// Largest difference between two pictures in eight bits.
 fn largest_step(a: &Film, b: &Film) -> u8 {
     let coded = |film: &Film| {
-        develop(film, &Development { background: Some(Vec3::splat(0.2)), ..Development::default() }).pixels
+        develop(film, &Development { background: Background::Colour(Vec3::splat(0.2)), ..Development::default() })
+            .pixels
     };
     coded(a).iter().zip(coded(b)).map(|(a, b)| a.abs_diff(b)).max().unwrap()
 }
@@ -193,7 +195,7 @@ fn coats_are_lit_by_lamps_as_by_the_sun() {
     let eye = Vec3::new(0.05, 0.05, 0.26);
     let of = |light: Light, show: Show| {
         let frame = Frame { lights: vec![light], ambient: Vec3::ZERO, ..crate::runtime::look(eye, [64, 64]) };
-        renderer.draw(&ball.scene(&tiles), &frame, show).unwrap().picture
+        renderer.prepare(&ball.scene(&tiles)).unwrap().draw(&frame, show).unwrap().picture
     };
     let to_light = Vec3::new(-0.5, 0.7, 0.6).normalize();
     let sun = of(Directional { to_light, irradiance: Vec3::splat(3.0) }.into(), Show::default());

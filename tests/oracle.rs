@@ -49,7 +49,7 @@ fn volume_and_reference_find_the_same_optical_depth_in_leaning_hair() {
     }
 }
 
-fn thin() -> Grown {
+pub fn thin() -> Grown {
     let (mut guard, mut undercoat) = scenes::mink();
     guard.density_per_cm2 = 60.0;
     undercoat.density_per_cm2 = 1500.0;

@@ -240,5 +240,5 @@ pub fn planted(fault: Fault) -> (f32, f32) {
         Fault::Lean | Fault::Presence => {}
     }
     let pixels = on_cpu(&faulty, &other).iter().map(|&alpha| [0.0, 0.0, 0.0, alpha]).collect();
-    difference(&on_cpu(&sound, &look), &Picture { size: [PIXELS; 2], pixels })
+    difference(&on_cpu(&sound, &look), &Picture { size: [PIXELS; 2], pixels, depth_m: Vec::new() })
 }

@@ -87,8 +87,9 @@ fn frame(ray: Vec3) -> Frame {
         eye: (-ray).extend(0.0),
         size: [4; 2],
         lights: vec![
-            Directional { to_light: Vec3::new(0.4, 0.3, 0.9).normalize(), irradiance: Vec3::new(3.0, 2.0, 1.0) },
-            Directional { to_light: Vec3::new(-0.9, 0.2, 0.05).normalize(), irradiance: Vec3::new(0.5, 1.0, 2.0) },
+            Directional { to_light: Vec3::new(0.4, 0.3, 0.9).normalize(), irradiance: Vec3::new(3.0, 2.0, 1.0) }.into(),
+            Directional { to_light: Vec3::new(-0.9, 0.2, 0.05).normalize(), irradiance: Vec3::new(0.5, 1.0, 2.0) }
+                .into(),
         ],
         ambient: Vec3::new(0.2, 0.3, 0.4),
     }
@@ -151,7 +152,7 @@ fn skin_is_lit_as_its_formulas_say() {
         let depth = f64::from(-unorm(SKIN[3]).ln() * density).min(1.5);
         let gloss = if density > 0.0 { 0.0 } else { 1.0 };
         let mut radiance = albedo * frame.ambient.as_dvec3() * (-depth).exp();
-        for light in &frame.lights {
+        for light in frame.lights.iter().map(|light| light.at(Vec3::ZERO)) {
             let (to_light, normal) = (light.to_light.as_dvec3(), normal.as_dvec3());
             let shadow = (-depth * reference::skin_slant(normal.dot(to_light))).exp();
             let shown = reference::skin_radiance(albedo, normal, -ray.as_dvec3(), to_light, gloss);
@@ -200,7 +201,7 @@ fn fins_are_as_opaque_and_as_bright_as_their_formulas_say() {
         let outside = f64::from(-unorm(TANGENT[3]).ln() * tint.w);
         let reach = |transmittance: f64| reference::multiply_scattered(transmittance, albedo);
         let mut radiance = albedo * frame.ambient.as_dvec3() * reach((-outside).exp());
-        for light in &frame.lights {
+        for light in frame.lights.iter().map(|light| light.at(Vec3::ZERO)) {
             let (to_light, tangent) = (light.to_light.as_dvec3(), tangent.as_dvec3());
             let cosine = normal.as_dvec3().dot(to_light);
             let lateral = (1.0 - tangent.dot(to_light).powi(2)).max(0.0).sqrt();

@@ -3,10 +3,11 @@
 use super::{COUNT, Worst, hold, on_device, on_sphere, open, random, reference};
 use crate::scenes::{self, Grown};
 use furrier::fur::undercoat::{Pattern, Undercoat};
+use furrier::gpu::light::LightItem;
 use furrier::gpu::{Binding, Source, Text};
 use furrier::hybrid::Settings;
 use furrier::hybrid::flat::Flat;
-use furrier::hybrid::gpu::items::{LINEAR, LightItem, StrandItem, TriangleItem, VertexItem};
+use furrier::hybrid::gpu::items::{LINEAR, StrandItem, TriangleItem, VertexItem};
 use furrier::hybrid::gpu::kernels::SHARED;
 use furrier::hybrid::gpu::layout::{SceneUniform, ViewUniform};
 use furrier::math::hash::Stream;
@@ -150,7 +151,7 @@ fn shaders_and_rust_agree_on_where_things_lie() {
         list("triangles", bytemuck::cast_slice(&items)),
         list("vertices", bytemuck::cast_slice(&VertexItem::of(&scene, &normals, &offsets_m))),
         list("tables", bytemuck::cast_slice(&tables)),
-        list("lights", bytemuck::cast_slice(&LightItem::of(&scenes::studio()))),
+        list("lights", bytemuck::cast_slice(&scenes::studio().all().map(LightItem::from).collect::<Vec<_>>())),
         list("strands", bytemuck::cast_slice(&StrandItem::of(&grown.guard))),
         list("points", bytemuck::cast_slice(&points)),
     ];

@@ -44,7 +44,7 @@ fn moments(asset: &Asset, reading: &Reading) -> Vec<Both> {
     }
     for animation in 0..reading.gltf.animations().count() {
         for share in [0.13, 0.5, 0.81] {
-            let seconds = share * asset.duration_s(animation).expect("keys");
+            let seconds = share * reading.duration_s(animation);
             let ours = asset.pose(animation, seconds).expect("a pose");
             all.push(both(
                 format!("animation {animation} at {seconds} s"),

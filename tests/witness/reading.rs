@@ -106,6 +106,16 @@ impl Reading {
         found
     }
 
+    /// Time of an animation's last key, s.
+    pub fn duration_s(&self, index: usize) -> f64 {
+        let animation = self.gltf.animations().nth(index).expect("an animation");
+        let keys = |channel: gltf::animation::Channel<'_>| {
+            let reader = channel.reader(|_| self.gltf.blob.as_deref());
+            reader.read_inputs().expect("keys").map(f64::from).fold(0.0, f64::max)
+        };
+        animation.channels().map(keys).fold(0.0, f64::max)
+    }
+
     /// All nodes at `seconds` of an animation, or at rest.
     pub fn moment(&self, at: Option<(usize, f64)>) -> Moment {
         let mut local: Vec<(DVec3, DQuat, DVec3)> = Vec::new();
