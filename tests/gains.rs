@@ -18,7 +18,7 @@ use furrier::runtime::Show;
 use furrier::runtime::gpu::Renderer;
 
 /// Between the angles at which gains are stored, degrees.
-const ANGLES_DEG: [f32; 4] = [1.0, 28.0, 42.0, 65.0];
+const ANGLES_DEG: [f32; 4] = [5.0, 28.0, 42.0, 65.0];
 
 /// Other ways round than those that gains are fitted along.
 fn directions(theta_deg: f32) -> impl Iterator<Item = Vec3> {
