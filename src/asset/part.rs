@@ -2,9 +2,9 @@
 
 use super::document::Document;
 use super::material::BaseColour;
-use super::primitive::Primitive;
 use super::repair::Notes;
 use super::scene_graph::SceneGraph;
+use super::stored::Primitive;
 use crate::data::mesh::Mesh;
 use crate::error::{Error, Result};
 use crate::math::{DAffine3, DMat3, DMat4, DVec3, Vec3};

@@ -3,7 +3,7 @@
 use super::document::Document;
 use super::encode::{Use, numbers};
 use super::json::At;
-use super::primitive::Primitive;
+use super::stored::Primitive;
 use crate::error::Result;
 use crate::math::{DVec3, Vec3};
 use serde_json::json;
