@@ -17,7 +17,7 @@ fn some_hair() -> Strands {
 }
 
 fn export(strands: &Strands) -> Export<'_> {
-    Export { strands, origin_m: DVec3::new(1000.0, -2.0, 0.5), metres_per_unit: 0.01, name: "2 bent scenes" }
+    Export { strands, origin_m: DVec3::new(1000.0, -2.0, 0.5), metres_per_unit: 0.01, name: "2 bent skins" }
 }
 
 /// A point of the hair in the file's units.
