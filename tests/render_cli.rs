@@ -20,11 +20,14 @@ impl Folder {
         self.0.path().join(name)
     }
 
-    /// Draws a thinly furred plane.
+    /// Draws a thinly furred plane, from 20° above it where the options say nothing else.
     fn render(&self, name: &str, options: &[&str]) -> Assert {
         let mut command = Command::new(furrier_path());
         command.args(["render", "sample:plane", "--preset", "mink", "--size", "48x48", "-o"]).arg(self.path(name));
         command.args(["--set", "guard.density_per_cm2=20", "--set", "undercoat.density_per_cm2=600"]).args(options);
+        if !options.contains(&"--camera") {
+            command.args(["--orbit", "35,20,1"]);
+        }
         command.assert()
     }
 
