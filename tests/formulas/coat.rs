@@ -174,6 +174,7 @@ pub fn law(shared: &[Source]) -> Vec<String> {
     let level = |i: usize| of(i)[6].w * (mips - 1) as f32;
     let slope = |i: usize| if i % 8 == 0 { Vec2::ZERO } else { (of(i)[7].truncate().truncate() - 0.5) * 0.4 };
     let cosine = |i: usize| LEAST_COSINE + (1.0 - LEAST_COSINE) * of(i)[7].z;
+    let opacity = |i: usize| if i % 8 == 0 { 1.0 } else { of(i)[7].w };
     let mut inputs = Vec::new();
     for (i, case) in cases.iter().enumerate() {
         let [dx, dy] = pixel(i);
@@ -186,7 +187,7 @@ pub fn law(shared: &[Source]) -> Vec<String> {
             case.medium.tangent.extend(case.medium.extinction),
             case.axis.extend(case.spread),
             case.normal.extend(bend_per_m(i)),
-            case.light.extend(of(i)[7].w),
+            case.light.extend(opacity(i)),
             Vec4::new(dx.x, dx.y, dy.x, dy.y),
             Vec4::new(slope.x, slope.y, level(i), cosine(i)),
             of(i)[0],
@@ -259,7 +260,7 @@ pub fn law(shared: &[Source]) -> Vec<String> {
         rough.note(i, "gain of a stack", out[4].x, stack.gain(&seen));
         let offset = f64::from((up * slab_m(i)).length() / tile.height_m);
         worst.note(i, "presence", out[4].y, reference::smoothstep(0.0, FADE_BELOW.into(), offset) as f32);
-        worst.note(i, "depth of an opacity", out[4].z, depth_of_opacity(of(i)[7].w));
+        worst.note(i, "depth of an opacity", out[4].z, depth_of_opacity(opacity(i)));
         rough.note(i, "share of fins", out[4].w, reference::fin_share(cosine(i).into()) as f32);
         let [dx, dy] = pixel(i);
         let vectors: [DVec2; 3] = [dx, dy, slope(i)].map(|v| v.as_dvec2());
