@@ -279,3 +279,31 @@ fn raw_text_is_no_import() {
     let text = "// use crate::cli;\nconst S: &str = \"crate::cli::run \\\" crate::bake\"; /* crate::bake */ use crate::math::Vec3;";
     assert_eq!(imports("data/mesh.rs", text), [(2, "math".to_owned())]);
 }
+
+/// Lines of `text`, code or comment, that name a flag of the command line.
+fn flags_named(text: &str) -> Vec<&str> {
+    let names = |line: &&str| {
+        let after = |(at, _): (usize, &str)| line[at + 2..].starts_with(|c: char| c.is_ascii_lowercase());
+        let before = |(at, _): (usize, &str)| !line[..at].ends_with(|c: char| c.is_alphanumeric() || c == '-');
+        line.match_indices("--").any(|found| after(found) && before(found))
+    };
+    text.lines().filter(names).collect()
+}
+
+#[test]
+fn flags_are_named_by_the_command_line_alone() {
+    let files = sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    for (path, text) in files.iter().filter(|(path, _)| unit_of(path) != "cli") {
+        assert_eq!(flags_named(text), Vec::<&str>::new(), "{path}");
+    }
+    let text = "a -- b\nx --y\nsize--;\n.with_field(\"--size\")\n// `--size` says";
+    assert_eq!(flags_named(text), ["x --y", ".with_field(\"--size\")", "// `--size` says"]);
+}
+
+/// A value that one function leaves for another belongs in what they pass each other.
+#[test]
+fn nothing_is_passed_through_a_thread() {
+    for (path, text) in sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")) {
+        assert!(!text.contains("thread_local!"), "{path}");
+    }
+}

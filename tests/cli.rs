@@ -187,6 +187,24 @@ fn two_presets_for_one_material_or_a_material_that_is_not_there_are_refused() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
+/// The library knows no flags: the command line puts them where it names what they set.
+#[test]
+fn errors_and_notes_name_the_flag_to_change() {
+    let folder = tempfile::tempdir().unwrap();
+    for (options, said) in [
+        (&["--material", "feathers"][..], &["field: --material\n"][..]),
+        (&["--set", "guard=1"], &["field: --set guard=1\n", "as in `--set` guard.length.mm=30"]),
+        (&["--parameterisation", "uv", "--uv-set", "7"], &["use `--parameterisation` atlas, or another `--uv-set`"]),
+    ] {
+        let mut command = furrier();
+        command.args(["bake", "sample:plane", "-o"]).arg(folder.path().join("out.glb")).args(options);
+        let error = String::from_utf8(command.assert().failure().get_output().stderr.clone()).unwrap();
+        said.iter().for_each(|said| assert!(error.contains(said), "{said} is missing from: {error}"));
+    }
+    let view = furrier().args(["view", "no.glb", "--screenshot", "a.png", "--orbit", "1"]).assert().code(2);
+    view.stderr(predicate::str::contains("--orbit").and(predicate::str::contains("`--orbit` 35,12,1")));
+}
+
 #[test]
 fn a_report_has_its_steps_and_errors() {
     let folder = tempfile::tempdir().unwrap();

@@ -130,6 +130,29 @@ fn light_adds_up_and_darkness_is_dark() {
     assert!((all / (a + b + c) - 1.0).abs() < 5e-3, "{all} for {a} + {b} + {c}");
 }
 
+/// Views of one pose do not remember each other: camera, light, size and what is shown change from one to the next.
+#[test]
+fn a_prepared_pose_is_drawn_from_anywhere() {
+    let gpu = Gpu::open(&Choice::Auto).unwrap();
+    let tiles = [small_tile()];
+    let ball = coats::sphere(0.05, 10, 0.5, &tiles[0]);
+    let renderer = Renderer::new(&gpu, &tiles, 2).unwrap();
+    let front = look(Vec3::new(0.05, 0.05, 0.26), [40, 32]);
+    let above = Frame { ambient: Vec3::splat(0.1), ..look(Vec3::new(0.01, 0.24, 0.02), [40, 32]) };
+    let larger = look(Vec3::new(-0.2, 0.0, 0.1), [64, 48]);
+    let bare = Show { shells: false, fins: false, ..Show::default() };
+    let all = [(&front, Show::default()), (&above, Show::default()), (&above, bare), (&larger, Show::default())];
+    let anew = all.map(|(view, show)| renderer.prepare(&ball.scene(&tiles)).unwrap().draw(view, show).unwrap());
+    let mut prepared = renderer.prepare(&ball.scene(&tiles)).unwrap();
+    for i in [0, 1, 2, 3, 0, 2, 1] {
+        let (view, show) = all[i];
+        assert_eq!(prepared.draw(view, show).unwrap().picture, anew[i].picture, "view {i}");
+    }
+    for (i, j) in [(0, 1), (1, 2)] {
+        assert_ne!(anew[i].picture, anew[j].picture);
+    }
+}
+
 #[test]
 fn what_cannot_be_drawn_is_refused() {
     let gpu = Gpu::open(&Choice::Auto).unwrap();

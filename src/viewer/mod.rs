@@ -219,12 +219,21 @@ fn shoot(asset: &Asset, coat: &Coat, options: &Options, viewpoints: &[Viewpoint]
         |prepared| prepared.as_ref().map_or(0, Prepared::bytes),
     )?;
     let stage = &options.stage;
+    // The studio's light and a chart's turn with the camera; all other stands still.
+    let turns = stage.lights.is_empty() && stage.environment.is_none();
+    let still = if turns {
+        None
+    } else {
+        Some(recorder.step("lights", || stage.lit(&subject, &stage.camera(&subject)?), |_| 0)?)
+    };
     let mut pictures = Vec::with_capacity(viewpoints.len());
     for viewpoint in viewpoints {
         let start = Instant::now();
         let camera = viewpoint.camera(&subject, stage.aspect())?;
         let [near_m, far_m] = depth_range_m(&camera, &points_m, origin_m);
-        let lit = if charted && stage.lights.is_empty() && stage.environment.is_none() {
+        let lit = if let Some(lit) = &still {
+            lit.clone()
+        } else if charted {
             let forward = DVec3::from(camera.target) - DVec3::from(camera.eye);
             let light = chart::light(forward.as_vec3().normalize_or(Vec3::NEG_Z)).into();
             let ambient = stage.ambient.unwrap_or(chart::AMBIENT);

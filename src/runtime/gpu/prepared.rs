@@ -1,7 +1,7 @@
 //! A pose on the device, ready to be drawn from anywhere in any light.
 
 use super::layout::ViewUniform;
-use super::resources::{GpuFur, GpuSkin};
+use super::resources::{self, GpuFur, GpuSkin};
 use super::targets::Targets;
 use super::{Drawn, PassCost, Renderer};
 use crate::error::{Error, Result};
@@ -17,6 +17,8 @@ pub struct Prepared<'a> {
     renderer: &'a Renderer<'a>,
     skins: Vec<GpuSkin>,
     furs: Vec<GpuFur>,
+    /// Of geometry and the skin's textures.
+    bytes: u64,
     /// Camera and lights, written anew for each picture.
     view: wgpu::Buffer,
     view_group: wgpu::BindGroup,
@@ -29,10 +31,13 @@ impl<'a> Prepared<'a> {
     pub(super) fn new(renderer: &'a Renderer<'a>, scene: &DrawList<'_>) -> Result<Self> {
         let (gpu, layouts) = (renderer.gpu, &renderer.pipelines.layouts);
         let view = gpu.buffer("view", &[ViewUniform::zeroed()], wgpu::BufferUsages::UNIFORM);
+        let (skins, skin_bytes) = resources::skins(gpu, layouts, &scene.skins)?;
+        let furs: Vec<_> = scene.furs.iter().map(|fur| GpuFur::new(gpu, layouts, fur)).collect();
         Ok(Self {
             renderer,
-            skins: scene.skins.iter().map(|skin| GpuSkin::new(gpu, layouts, skin)).collect::<Result<_>>()?,
-            furs: scene.furs.iter().map(|fur| GpuFur::new(gpu, layouts, fur)).collect(),
+            bytes: skin_bytes + furs.iter().map(|fur| fur.bytes).sum::<u64>(),
+            skins,
+            furs,
             view_group: gpu.group(&layouts.view, &[&view]),
             view,
             timer: Timer::new(gpu, PASSES.len() as u32),
@@ -42,7 +47,7 @@ impl<'a> Prepared<'a> {
 
     /// Memory of geometry and the skin's textures, bytes.
     pub fn bytes(&self) -> u64 {
-        self.skins.iter().map(|skin| skin.bytes).chain(self.furs.iter().map(|fur| fur.bytes)).sum()
+        self.bytes
     }
 
     /// Draws one picture. It is cleared to transparent black.
@@ -92,7 +97,7 @@ impl<'a> Prepared<'a> {
 
     fn draw_skins(&self, pass: &mut wgpu::RenderPass<'_>, visible: bool, cost: &mut PassCost) {
         pass.set_pipeline(if visible { &self.renderer.pipelines.skin } else { &self.renderer.pipelines.skin_depth });
-        for skin in self.skins.iter().filter(|skin| skin.index_count > 0) {
+        for skin in &self.skins {
             let tile = skin.tile.map_or(&self.renderer.bare, |tile| &self.renderer.tiles[tile]);
             pass.set_bind_group(1, &tile.group, &[]);
             pass.set_bind_group(2, &skin.material, &[]);

@@ -142,32 +142,53 @@ pub struct GpuSkin {
     pub index_count: u32,
     /// Tile that shades it.
     pub tile: Option<usize>,
-    /// Geometry and texture memory.
+    /// What drawing it reads: geometry and texture.
     pub bytes: u64,
 }
 
 impl GpuSkin {
-    /// Uploads `skin`.
-    ///
-    /// # Errors
-    /// As [`Gpu::texture_array`].
-    pub fn new(gpu: &Gpu, layouts: &Layouts, skin: &SkinMesh<'_>) -> Result<Self> {
-        let white = Image8 { width: 1, height: 1, channels: 4, pixels: vec![255; 4] };
-        let (image, wrap) = skin.texture.unwrap_or((&white, [Wrap::Repeat; 2]));
-        let texture = gpu.texture_array("base colour", &mip_chain(image), Coding::Srgb)?;
+    /// Uploads `skin`, which shows `texture`.
+    pub fn new(gpu: &Gpu, layouts: &Layouts, skin: &SkinMesh<'_>, texture: &TextureArray) -> Self {
+        let wrap = skin.texture.map_or([Wrap::Repeat; 2], |(_, wrap)| wrap);
         let sampler = sampler(gpu, wrap, 16);
-        let material = bind(gpu, &layouts.material, &[wgpu::BindingResource::Sampler(&sampler), view(&texture)]);
+        let material = bind(gpu, &layouts.material, &[wgpu::BindingResource::Sampler(&sampler), view(texture)]);
         let vertices = SkinVertex::of(skin);
         let bytes = texture.bytes + bytes_of(&vertices) + bytes_of(&skin.triangles);
-        Ok(Self {
+        Self {
             material,
             vertices: gpu.buffer("skin vertices", &vertices, wgpu::BufferUsages::VERTEX),
             indices: gpu.buffer("skin indices", &skin.triangles, wgpu::BufferUsages::INDEX),
             index_count: 3 * skin.triangles.len() as u32,
             tile: skin.tile,
             bytes,
-        })
+        }
     }
+}
+
+/// Uploads what has triangles of `skins`; skins that show the same texture share it. Gives the bytes of all of it, too.
+///
+/// # Errors
+/// As [`Gpu::texture_array`].
+pub fn skins(gpu: &Gpu, layouts: &Layouts, skins: &[SkinMesh<'_>]) -> Result<(Vec<GpuSkin>, u64)> {
+    let white = Image8 { width: 1, height: 1, channels: 4, pixels: vec![255; 4] };
+    let mut textures: Vec<(&Image8, TextureArray)> = Vec::new();
+    let (mut uploaded, mut bytes) = (Vec::new(), 0);
+    for skin in skins.iter().filter(|skin| !skin.triangles.is_empty()) {
+        let image = skin.texture.map_or(&white, |(image, _)| image);
+        let known = textures.iter().position(|(known, _)| std::ptr::eq(*known, image));
+        let at = match known {
+            Some(at) => at,
+            None => {
+                textures.push((image, gpu.texture_array("base colour", &mip_chain(image), Coding::Srgb)?));
+                textures.len() - 1
+            }
+        };
+        let texture = &textures[at].1;
+        let skin = GpuSkin::new(gpu, layouts, skin, texture);
+        bytes += if known.is_some() { skin.bytes - texture.bytes } else { skin.bytes };
+        uploaded.push(skin);
+    }
+    Ok((uploaded, bytes))
 }
 
 /// Shells and fins on the device.
