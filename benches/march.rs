@@ -18,8 +18,8 @@ use furrier::hybrid::{Settings, draw};
 use furrier::math::Vec3;
 use furrier::volume::march::content::{Content, Resolution};
 use furrier::volume::march::volume::Volume;
-use furrier::volume::march::{Journey, Start, Stepping};
-use furrier::volume::shell::prism::{Place, Prism};
+use furrier::volume::march::{MarchRay, Start, Stepping};
+use furrier::volume::shell::prism::{Prism, ShellPoint};
 use furrier::volume::shell::subelement;
 use scenes::Grown;
 
@@ -76,12 +76,12 @@ impl Rays {
                 let triangle = (i % triangles) as u32;
                 let (u, v) = (at(0.754_877_7), at(0.569_840_3));
                 let b = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
-                let place = Place { b, t: 1.0 };
-                let j = volume.shell().prism(triangle).jacobian(&place);
+                let point = ShellPoint { b, t: 1.0 };
+                let j = volume.shell().prism(triangle).jacobian(&point);
                 let up = j.up_m.normalize();
                 let aside = up.cross(Vec3::new(at(0.31) - 0.5, at(0.47) - 0.5, at(0.83) - 0.5)).normalize();
                 let direction = (aside * (3.0 * at(0.618_034)) - up).normalize();
-                (j.at_m, direction, Start { at_m: 0.0, triangle, place })
+                (j.at_m, direction, Start { at_m: 0.0, triangle, point })
             })
             .collect();
         Self { volume, rays }
@@ -93,24 +93,24 @@ impl Rays {
         let mut rays = Vec::new();
         for i in 0..RAYS as u32 {
             let (x, y) = ((i % 32) as f32, (i / 32 % 32) as f32);
-            let place = Place { b: [0.15 + x / 96.0, 0.15 + y / 96.0], t: 1.0 };
+            let point = ShellPoint { b: [0.15 + x / 96.0, 0.15 + y / 96.0], t: 1.0 };
             let triangle = 10 + i / 1024;
             let direction = Vec3::new(0.6, -0.5, -0.6).normalize();
-            let start = Start { at_m: 0.0, triangle, place };
-            rays.push((volume.shell().prism(triangle).jacobian(&place).at_m, direction, start));
+            let start = Start { at_m: 0.0, triangle, point };
+            rays.push((volume.shell().prism(triangle).jacobian(&point).at_m, direction, start));
         }
         Self { volume, rays }
     }
 
     fn depths(&self) -> Vec<f32> {
-        let journey = |&(origin_m, direction, start): &(Vec3, Vec3, Start)| Journey {
+        let march_ray = |&(origin_m, direction, start): &(Vec3, Vec3, Start)| MarchRay {
             origin_m,
             direction,
             start,
             far_m: f32::INFINITY,
         };
-        let journeys: Vec<Journey> = self.rays.iter().map(journey).collect();
-        self.volume.depths_along(&journeys, &Stepping::default(), 0.0, f32::INFINITY).0
+        let rays: Vec<MarchRay> = self.rays.iter().map(march_ray).collect();
+        self.volume.depths_along(&rays, &Stepping::default(), 0.0, f32::INFINITY).0
     }
 }
 
@@ -182,14 +182,14 @@ fn cell(volume: &Volume<'_>, prism: &Prism, t: u32, i: u32, d: u32, heights: [f3
     let corner = |k: usize, t: f32| {
         let mut b = centre - Vec3::splat(third);
         b[k] += 3.0 * third;
-        prism.jacobian(&Place { b: [b.y, b.z], t }).at_m
+        prism.jacobian(&ShellPoint { b: [b.y, b.z], t }).at_m
     };
-    let place = Place { b: [centre.y, centre.z], t: 0.5 * (heights[0] + heights[1]) };
-    let j = prism.jacobian(&place);
+    let point = ShellPoint { b: [centre.y, centre.z], t: 0.5 * (heights[0] + heights[1]) };
+    let j = prism.jacobian(&point);
     let undercoat = &shell.undercoat;
     let per_volume = undercoat.density_per_m2 * shell.skin.area_vector_m2(t as usize).length() / j.determinant.abs();
     let up_m = j.up_m.length();
-    let length = per_volume * up_m * undercoat.stretch * undercoat.reaching(place.t);
+    let length = per_volume * up_m * undercoat.stretch * undercoat.reaching(point.t);
     Cell {
         corners: heights.map(|t| [0, 1, 2].map(|k| corner(k, t))),
         hair: j.up_m / up_m,

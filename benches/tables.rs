@@ -114,8 +114,8 @@ fn meshes(part: &str) {
                 s.tiles_per_m.p5 * texels,
                 s.tiles_per_m.p95 * texels,
                 arrow(format!("{:.1}", loose.seams_m / root), format!("{:.1}", s.seams_m / root)),
-                arrow(format!("{:.2}", seams.by_chance.difference), format!("{:.2}", seams.worn.difference)),
-                seams.worn.variance,
+                arrow(format!("{:.2}", seams.by_chance.difference), format!("{:.2}", seams.on_skin.difference)),
+                seams.on_skin.variance,
             );
         }
     }
@@ -132,7 +132,7 @@ fn seams(seeds: u64, part: &str) {
                 .map(|seed| {
                     let patches =
                         parameterise(&mesh, &comb, tile.edge_m, Parameterisation::Lapped { seed }).expect("patches");
-                    let seams = seams_of(&mesh, &comb, preset.groom.lean_deg, &patches, &tile).worn;
+                    let seams = seams_of(&mesh, &comb, preset.groom.lean_deg, &patches, &tile).on_skin;
                     let s = &patches.stats;
                     format!(
                         "{:.3} {:.2} ({} p, {:.1} %, {:.1}°, {:.1})",

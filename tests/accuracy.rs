@@ -2,7 +2,7 @@
 
 use furrier::coat::fins::FinParameters;
 use furrier::coat::hair::{TileHair, leaning};
-use furrier::coat::judge::{Effort, Row, coverage_table};
+use furrier::coat::judge::{CoverageRow, Effort, coverage_table};
 use furrier::coat::shells::ShellParameters;
 use furrier::coat::tile::{TileRecipe, bake};
 use furrier::data::shell::{Incidence, Stack};
@@ -35,7 +35,7 @@ fn hair(guard: bool, shape: Shape) -> TileHair {
     TileHair::grow(&fibre(guard, guard_fibre), &fibre(!guard, undercoat_fibre), 8e-3, 7)
 }
 
-fn table(guard: bool, shape: Shape, lean_deg: f32) -> Vec<Row> {
+fn table(guard: bool, shape: Shape, lean_deg: f32) -> Vec<CoverageRow> {
     let hair = hair(guard, shape);
     let start = std::time::Instant::now();
     let tile = bake(&hair, &recipe(lean_deg));
@@ -48,7 +48,7 @@ fn table(guard: bool, shape: Shape, lean_deg: f32) -> Vec<Row> {
 }
 
 /// Coverage of the strands, how far stack and constant α are off, and their structure errors.
-pub fn print(name: &str, rows: &[Row]) {
+pub fn print(name: &str, rows: &[CoverageRow]) {
     for r in rows {
         println!(
             "{name}{:4.0}° strands {:.3} stack {:+.3} constant {:+.3}  rmse {:.3} / {:.3}",
@@ -64,8 +64,8 @@ pub fn print(name: &str, rows: &[Row]) {
 
 /// The first row whose coverage is off by more than 2 points (5 past 60°), or whose structure is not twice as good as with
 /// constant α.
-pub fn fault(rows: &[Row]) -> Option<Row> {
-    let off = |r: &&Row| {
+pub fn fault(rows: &[CoverageRow]) -> Option<CoverageRow> {
+    let off = |r: &&CoverageRow| {
         let bound = if r.theta_deg > 61.0 { 0.05 } else { 0.02 };
         let judged = r.theta_deg == 40.0 || r.theta_deg == 60.0;
         (r.stack - r.strands).abs() > bound || (judged && r.rmse > 0.5 * r.rmse_constant)
@@ -73,7 +73,7 @@ pub fn fault(rows: &[Row]) -> Option<Row> {
     rows.iter().find(off).copied()
 }
 
-fn holds(rows: &[Row]) {
+fn holds(rows: &[CoverageRow]) {
     assert_eq!(fault(rows), None);
 }
 
@@ -119,7 +119,7 @@ fn undercoat_has_the_coverage_of_single_hairs() {
         let rows = coverage_table(&single, &tile, leaning(lean_deg), Effort { pixels: 64, ..EFFORT });
         print("single hairs ", &rows);
         // Where single hairs stand the volume does not know: structure is not judged.
-        let rows: Vec<Row> = rows.into_iter().map(|row| Row { rmse: 0.0, ..row }).collect();
+        let rows: Vec<CoverageRow> = rows.into_iter().map(|row| CoverageRow { rmse: 0.0, ..row }).collect();
         holds(&rows);
     }
 }

@@ -2,11 +2,11 @@
 
 use crate::accuracy::{fault, print};
 use crate::meshes;
-use furrier::coat::atlas::judge::{Place, Worn, places, surface_tables};
-use furrier::coat::atlas::{Skin, bake};
+use furrier::coat::atlas::judge::{CoatedSkin, SurfacePoint, places, surface_tables};
+use furrier::coat::atlas::{AtlasSkin, bake};
 use furrier::coat::fins::FinParameters;
 use furrier::coat::hair::TileHair;
-use furrier::coat::judge::Row;
+use furrier::coat::judge::CoverageRow;
 use furrier::coat::shells::ShellParameters;
 use furrier::coat::tile::TileRecipe;
 use furrier::data::coat::{Sampled, Tile};
@@ -66,18 +66,18 @@ impl Ball {
         let mut patches = [parameterise(&self.mesh, &self.fields.direction, 8e-3, method).unwrap()];
         let square = fit_atlas(&mut patches, 8e-3, texels, 4).unwrap();
         let [patches] = patches;
-        let skin = Skin { mesh: &self.mesh, fields: &self.fields, patches: &patches, seed: SEED };
+        let skin = AtlasSkin { mesh: &self.mesh, fields: &self.fields, patches: &patches, seed: SEED };
         let tile = bake(&[skin], &square, [&self.hair[0], &self.hair[1]], &Self::recipe(), 3);
         (patches, tile)
     }
 
-    fn judged(&self, patches: &Patches, tile: &Tile, groups: &[Vec<Place>]) -> Vec<Vec<Row>> {
+    fn judged(&self, patches: &Patches, tile: &Tile, groups: &[Vec<SurfacePoint>]) -> Vec<Vec<CoverageRow>> {
         let hair = [&self.hair[0], &self.hair[1]];
-        surface_tables(&Worn { mesh: &self.mesh, fields: &self.fields, patches, tile, hair, seed: SEED }, groups)
+        surface_tables(&CoatedSkin { mesh: &self.mesh, fields: &self.fields, patches, tile, hair, seed: SEED }, groups)
     }
 
     /// Places well inside the quarter with these signs of x and y.
-    fn quarter(&self, count: usize, signs: [f32; 2]) -> Vec<Place> {
+    fn quarter(&self, count: usize, signs: [f32; 2]) -> Vec<SurfacePoint> {
         let inside = |t: usize| self.mesh.corners_m(t).iter().all(|p| p.x * signs[0] > 8e-3 && p.y * signs[1] > 8e-3);
         places(&self.mesh, count, 5, inside)
     }

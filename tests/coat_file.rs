@@ -3,7 +3,7 @@
 use crate::common::shared;
 use crate::made::{coat_for, tile};
 use ::ktx2 as ktx2_reader;
-use furrier::asset::coat::{NAME, dress};
+use furrier::asset::coat::{NAME, with_coat};
 use furrier::asset::{self, Asset, Document, Fallback, ktx2, read_coat, write_coat};
 use furrier::data::image::Image8;
 use furrier::math::hash::Stream;
@@ -108,9 +108,9 @@ fn everything_else_comes_through_unchanged() {
     }
     for asset in &assets {
         for fallback in [Fallback::None, Fallback::Shells(4)] {
-            let dressed = dress(asset, &coat_for(asset), fallback).expect("it can be dressed");
+            let coated = with_coat(asset, &coat_for(asset), fallback).expect("it takes a coat");
             assert_eq!(
-                all_changes(&asset.document, &dressed),
+                all_changes(&asset.document, &coated),
                 Vec::<String>::new(),
                 "{}",
                 asset.document.name.display()
@@ -122,12 +122,12 @@ fn everything_else_comes_through_unchanged() {
 #[test]
 fn the_comparison_sees_a_planted_change() {
     let asset = sample("creature");
-    let dressed = dress(&asset, &coat_for(&asset), Fallback::None).expect("it can be dressed");
-    let mut renamed = dressed.clone();
+    let coated = with_coat(&asset, &coat_for(&asset), Fallback::None).expect("it takes a coat");
+    let mut renamed = coated.clone();
     renamed.json["nodes"][0]["name"] = "other".into();
-    let mut moved = dressed.clone();
+    let mut moved = coated.clone();
     moved.binary[17] ^= 1;
-    let mut poorer = dressed;
+    let mut poorer = coated;
     poorer.json["animations"] = serde_json::json!([]);
     for planted in [renamed, moved, poorer] {
         assert_ne!(all_changes(&asset.document, &planted), Vec::<String>::new());
@@ -143,12 +143,12 @@ fn the_same_coat_gives_the_same_bytes() {
 }
 
 #[test]
-fn a_dressed_asset_is_not_dressed_twice() {
+fn an_asset_with_a_coat_gets_no_second() {
     let folder = tempfile::tempdir().expect("a folder");
     let asset = sample("torus");
     let out = written(&asset, Fallback::None, folder.path(), "a.glb");
     let again = asset::load(&out.to_string_lossy()).expect("it loads");
-    let error = dress(&again, &coat_for(&again), Fallback::None).expect_err("it wears a coat");
+    let error = with_coat(&again, &coat_for(&again), Fallback::None).expect_err("it wears a coat");
     assert!(error.what.contains("already") && error.hint.is_some());
 }
 

@@ -4,13 +4,13 @@ use crate::scenes;
 use furrier::data::mesh::Mesh;
 use furrier::fur::groom::unfold::unfold;
 use furrier::math::Vec3;
-use furrier::volume::shell::prism::{Place, Prism};
+use furrier::volume::shell::prism::{Prism, ShellPoint};
 
 const HEIGHT_M: f32 = 0.012;
 
 /// Prisms that are turned inside out somewhere.
 fn turned(mesh: &Mesh, lean: &[Vec3], length: &[f32]) -> usize {
-    let places = |t: f32| [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|b| Place { b, t });
+    let points = |t: f32| [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|b| ShellPoint { b, t });
     mesh.triangles
         .iter()
         .filter(|corners| {
@@ -19,7 +19,7 @@ fn turned(mesh: &Mesh, lean: &[Vec3], length: &[f32]) -> usize {
                 foot_m: corners.map(|v| mesh.positions_m[v]),
                 offset_m: corners.map(|v| lean[v] * (HEIGHT_M * length[v])),
             };
-            [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().flat_map(places).any(|at| prism.jacobian(&at).determinant <= 0.0)
+            [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().flat_map(points).any(|at| prism.jacobian(&at).determinant <= 0.0)
         })
         .count()
 }
@@ -67,7 +67,7 @@ fn rays_over_a_border_start_on_the_prisms_curved_side() {
         foot_m: [Vec3::ZERO, Vec3::new(0.005, 0.0, -0.002), Vec3::new(0.005, 0.0, 0.003)],
         offset_m: [Vec3::Y, Vec3::new(0.1, 0.9, 0.4), Vec3::new(-0.2, 0.8, 0.5)].map(|o| o * HEIGHT_M),
     };
-    let middle = Place { b: [0.5, 0.5], t: 0.5 };
+    let middle = ShellPoint { b: [0.5, 0.5], t: 0.5 };
     // Half-way from the foot of one corner to the tip of the other: on both flat halves of the wall.
     let flat_m = (prism.foot_m[1] + prism.foot_m[2] + prism.offset_m[2]) * 0.5;
     let off = prism.locate(flat_m, middle).unwrap().barycentric()[0];

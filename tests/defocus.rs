@@ -4,11 +4,11 @@ use crate::scenes;
 use furrier::data::film::Film;
 use furrier::math::Vec3;
 use furrier::stage::defocus::{Lens, defocus, middle_depth_m};
-use furrier::stage::projection::View;
+use furrier::stage::projection::Projection;
 
 pub const SIZE: [usize; 2] = [121, 81];
 
-fn view() -> View {
+fn view() -> Projection {
     scenes::view(&scenes::looking(Vec3::Z, Vec3::ZERO, Vec3::Y, 30.0), SIZE)
 }
 

@@ -9,7 +9,7 @@ use furrier::fur::groom::{Guard, Shape, Undercoat};
 use furrier::hybrid::{Settings, draw};
 use furrier::math::hash::Stream;
 use furrier::math::{DVec3, Vec3};
-use furrier::metrics::compare::{Light, compare};
+use furrier::metrics::compare::{LinearImage, compare};
 use furrier::volume::scene::Scene;
 
 const SIZE: [usize; 2] = [64, 64];
@@ -68,7 +68,7 @@ pub fn fault(film: &Film) -> Option<String> {
 }
 
 fn flip(a: &Film, b: &Film) -> f64 {
-    compare(&Light::from(a), &Light::from(b)).unwrap().flip
+    compare(&LinearImage::from(a), &LinearImage::from(b)).unwrap().flip
 }
 
 #[test]

@@ -91,9 +91,9 @@ fn coverage_tells_hairs_that_are_a_tenth_too_wide() {
 
 #[test]
 fn areas_tell_a_ribbon_from_one_a_tenth_wider() {
-    use furrier::hybrid::strands::Knot;
-    let knot = |x: f32, half_px: f32| Knot { x, y: 3.0 * x, z_m: 1.0, half_px };
-    let wider = crate::ribbons::covered(&knot(0.2, 0.055), &knot(6.2, 0.055));
+    use furrier::hybrid::strands::RibbonPoint;
+    let ribbon_point = |x: f32, half_px: f32| RibbonPoint { x, y: 3.0 * x, z_m: 1.0, half_px };
+    let wider = crate::ribbons::covered(&ribbon_point(0.2, 0.055), &ribbon_point(6.2, 0.055));
     let area = 2.0 * 0.05 * 6.0_f64.hypot(18.0);
     assert!((wider - area).abs() > 2e-3 * area + 1e-5);
 }
@@ -195,14 +195,15 @@ fn a_pattern_that_does_not_wrap_and_a_slab_left_out_show() {
 
 #[test]
 fn coverage_and_structure_tell_a_stack_that_is_off() {
-    use furrier::coat::judge::Row;
-    let good = Row { theta_deg: 40.0, strands: 0.8, stack: 0.81, constant: 0.3, rmse: 0.07, rmse_constant: 0.6 };
+    use furrier::coat::judge::CoverageRow;
+    let good =
+        CoverageRow { theta_deg: 40.0, strands: 0.8, stack: 0.81, constant: 0.3, rmse: 0.07, rmse_constant: 0.6 };
     assert_eq!(crate::accuracy::fault(&[good]), None);
     for faulty in [
-        Row { stack: good.constant, ..good },
-        Row { stack: 0.775, ..good },
-        Row { rmse: 0.35, ..good },
-        Row { theta_deg: 85.0, stack: 0.74, ..good },
+        CoverageRow { stack: good.constant, ..good },
+        CoverageRow { stack: 0.775, ..good },
+        CoverageRow { rmse: 0.35, ..good },
+        CoverageRow { theta_deg: 85.0, stack: 0.74, ..good },
     ] {
         assert_eq!(crate::accuracy::fault(&[good, faulty]), Some(faulty));
     }
@@ -269,7 +270,7 @@ fn the_reference_sees_places_a_thousandth_of_the_hair_beside_a_ray() {
 
 #[test]
 fn the_reference_sees_folds_a_fiftieth_beside_a_ray() {
-    assert!(crate::oracle::stretches_missed(0.02) > 0.02);
+    assert!(crate::oracle::intervals_missed(0.02) > 0.02);
 }
 
 #[test]

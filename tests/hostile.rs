@@ -2,7 +2,7 @@
 
 use crate::common::shared;
 use crate::made::coat_for;
-use furrier::asset::coat::{coat_of, dress};
+use furrier::asset::coat::{coat_of, with_coat};
 use furrier::asset::{self, Asset, Document, Fallback};
 use furrier::error::{Error, Kind};
 use furrier::math::hash::Stream;
@@ -133,7 +133,7 @@ fn use_all(bytes: &[u8]) -> Result<(), Error> {
     }
     match coat_of(&asset) {
         Ok(_) => Ok(()),
-        Err(_) => dress(&asset, &coat_for(&asset), Fallback::Shells(2)).map(|_| ()),
+        Err(_) => with_coat(&asset, &coat_for(&asset), Fallback::Shells(2)).map(|_| ()),
     }
 }
 
@@ -200,9 +200,9 @@ fn mutate(document: &Document, count: u64) -> u64 {
 fn mutated_files_never_panic() {
     for (name, count) in [("plane", 400), ("cylinder", 100)] {
         let asset = asset::load(&format!("sample:{name}")).expect("a sample");
-        let dressed = dress(&asset, &coat_for(&asset), Fallback::Shells(2)).expect("dressed");
+        let coated = with_coat(&asset, &coat_for(&asset), Fallback::Shells(2)).expect("it takes a coat");
         // Some mutations change nothing that matters; if none was accepted, nothing was tested beyond the first check.
-        assert!(mutate(&dressed, count) > count / 20);
+        assert!(mutate(&coated, count) > count / 20);
     }
     let Some(folder) = shared() else { return };
     for name in ["skinned_animated", "morph_targets", "texture_transform", "meshopt", "sparse_accessor", "quantized"] {

@@ -14,7 +14,7 @@ use furrier::hybrid::gpu;
 use furrier::hybrid::resolve::Blending;
 use furrier::hybrid::{Settings, draw, prepare};
 use furrier::math::Vec3;
-use furrier::metrics::compare::{Light, compare};
+use furrier::metrics::compare::{LinearImage, compare};
 use furrier::preset::Preset;
 use furrier::stage::background::Background;
 use furrier::stage::tone::{Development, develop};
@@ -45,7 +45,7 @@ fn hold(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &Sett
     let gpu = on_gpu(scene, lighting, camera, settings);
     let (a, b) = (developed(&cpu), developed(&gpu));
     let share = share_alike(&a, &b);
-    let flip = compare(&Light::from(&cpu), &Light::from(&gpu)).unwrap().flip;
+    let flip = compare(&LinearImage::from(&cpu), &LinearImage::from(&gpu)).unwrap().flip;
     let mean = |of: &dyn Fn(usize) -> f32| (0..cpu.alpha.len()).map(of).sum::<f32>() / cpu.alpha.len() as f32;
     println!(
         "{share:.5} of the pixels alike, FLIP {flip:.5}, coverage {:.4} and {:.4}",

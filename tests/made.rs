@@ -75,7 +75,7 @@ pub fn coat_for(asset: &Asset) -> Coat {
             fins: mesh.triangles.iter().map(fin).collect(),
             blend: None,
         });
-        // The first part is worn in two pieces, one of them passing into a third tile.
+        // The first part lies on the skin in two pieces, one of them passing into a third tile.
         if index == 0 && mesh.triangles.len() > 1 {
             let whole = coat.primitives.remove(0);
             let half = whole.triangles.len() / 2;

@@ -2,13 +2,13 @@
 
 use furrier::math::Vec3;
 use furrier::math::hash::Stream;
-use furrier::metrics::compare::{Light, compare, load};
+use furrier::metrics::compare::{LinearImage, compare, load};
 use furrier::metrics::timing::{Recorder, SCHEMA_VERSION};
 
 /// A smooth picture with structure: covered within a disc.
-pub fn picture() -> Light {
+pub fn picture() -> LinearImage {
     let (width, height) = (48, 40);
-    let mut light = Light { width, height, colour: vec![], alpha: vec![] };
+    let mut light = LinearImage { width, height, colour: vec![], alpha: vec![] };
     let mut stream = Stream::new(5);
     for i in 0..width * height {
         let (x, y) = ((i % width) as f32 / width as f32 - 0.5, (i / width) as f32 / height as f32 - 0.5);
@@ -21,7 +21,7 @@ pub fn picture() -> Light {
 }
 
 /// `picture` with each pixel passed through `change`.
-pub fn changed(change: impl Fn(Vec3) -> Vec3) -> Light {
+pub fn changed(change: impl Fn(Vec3) -> Vec3) -> LinearImage {
     let mut light = picture();
     light.colour.iter_mut().for_each(|c| *c = change(*c));
     light
@@ -41,8 +41,12 @@ fn known_differences_have_their_values() {
     let brighter = compare(&picture(), &changed(|c| c * 1.1)).unwrap();
     assert!((brighter.bias - 0.1).abs() < 1e-5, "{}", brighter.bias);
     // Constant pictures: (a − b)²/(b² + 0.01) and 20 log10 of the coded difference follow by hand.
-    let flat =
-        |value: f32| Light { width: 16, height: 16, colour: vec![Vec3::splat(value); 256], alpha: vec![1.0; 256] };
+    let flat = |value: f32| LinearImage {
+        width: 16,
+        height: 16,
+        colour: vec![Vec3::splat(value); 256],
+        alpha: vec![1.0; 256],
+    };
     let difference = compare(&flat(0.5), &flat(0.6)).unwrap();
     assert!((difference.rel_mse - 0.01 / 0.26).abs() < 1e-6, "{}", difference.rel_mse);
     let coded = |v: f64| 1.055 * v.powf(1.0 / 2.4) - 0.055;

@@ -6,12 +6,12 @@ use furrier::data::film::Film;
 use furrier::hybrid;
 use furrier::math::hash::Stream;
 use furrier::math::{DVec3, Vec3};
-use furrier::metrics::compare::{Difference, Light, compare};
-use furrier::reference::bvh::Ray;
+use furrier::metrics::compare::{Difference, LinearImage, compare};
+use furrier::reference::bvh::DRay;
 use furrier::reference::cone;
-use furrier::reference::medium::{Counted, Medium};
-use furrier::reference::point::ShellPoint;
-use furrier::reference::sight::Sight;
+use furrier::reference::medium::{Counted, DMedium};
+use furrier::reference::point::DShellPoint;
+use furrier::reference::sight::PrismRay;
 use furrier::reference::{self, Settings};
 use furrier::volume::scene::Lighting;
 
@@ -19,10 +19,10 @@ use furrier::volume::scene::Lighting;
 fn depth_of_reference(hairs: &Cylinders, direction: DVec3) -> f64 {
     on_level_skin(hairs, |scene| {
         let normals = scene.skin.smooth_normals();
-        let medium = Medium::new(scene, &normals, None).unwrap();
+        let medium = DMedium::new(scene, &normals, None).unwrap();
         // Through a point over the middle, off any lattice line.
         let through = DVec3::new(0.13, 0.29, 1.0) * hairs.length_m;
-        let ray = Ray::new(through - direction * (20.0 * hairs.length_m), direction);
+        let ray = DRay::new(through - direction * (20.0 * hairs.length_m), direction);
         medium.depth_along(&ray, 0.0, f64::INFINITY, Counted::Undercoat, f64::INFINITY)
     })
 }
@@ -85,7 +85,7 @@ fn compared(usual: &Lighting, lighting: &Lighting, change: impl Fn(&mut hybrid::
     let mut prepared = hybrid::prepare(&scene, lighting, &hybrid::Settings::best(SIZE)).unwrap();
     change(&mut prepared);
     let drawn = prepared.draw(&scenes::camera(0.35)).unwrap().film;
-    let difference = compare(&Light::from(&film), &Light::from(&drawn)).unwrap();
+    let difference = compare(&LinearImage::from(&film), &LinearImage::from(&drawn)).unwrap();
     println!("{difference:?}");
     difference
 }
@@ -154,13 +154,13 @@ fn a_line_sees_a_hair_where_its_rays_meet_it() {
     assert!(gap < 3e-5, "{gap} of a stretch");
 }
 
-/// Of a thousand random places in a scene's shell, how many a ray through them does not find where they are, if it passes
+/// Of a thousand random points in a scene's shell, how many a ray through them does not find where they are, if it passes
 /// `beside` of the shell's height away.
 pub fn places_missed(beside: f64) -> usize {
     let grown = thin();
     let scene = grown.scene();
     let normals = scene.skin.smooth_normals();
-    let medium = Medium::new(&scene, &normals, None).unwrap();
+    let medium = DMedium::new(&scene, &normals, None).unwrap();
     let height_m = f64::from(medium.shell.undercoat.height_m);
     let mut random = Stream::new(11);
     let mut unit = || f64::from(random.unit());
@@ -168,18 +168,18 @@ pub fn places_missed(beside: f64) -> usize {
         let triangle = (unit() * scene.skin.triangles.len() as f64) as u32;
         let (u, v) = (unit(), unit());
         let b = if u + v < 1.0 { DVec3::new(u, v, 1.0 - u - v) } else { DVec3::new(1.0 - u, 1.0 - v, u + v - 1.0) };
-        let place = ShellPoint { triangle, b, t: unit() };
+        let point = DShellPoint { triangle, b, t: unit() };
         let direction = DVec3::new(unit() - 0.5, unit() - 0.5, unit() - 0.5).normalize();
         let away = direction.any_orthonormal_vector() * (beside * height_m);
         let at_m = height_m * (1.0 + unit());
-        let ray = Ray::new(medium.slabs.position_m(&place) + away - direction * at_m, direction);
+        let ray = DRay::new(medium.slabs.position_m(&point) + away - direction * at_m, direction);
         let mut found = false;
         medium.slabs.visit(&ray, [0.0, 3.0 * height_m], f64::INFINITY, |sight, _, [from_m, to_m], _| {
             found |= from_m - 1e-9 <= at_m
                 && at_m <= to_m + 1e-9
                 && sight.spots(at_m).into_iter().flatten().any(|spot| {
-                    let there = spot.place;
-                    there.triangle == triangle && (there.b - b).length() < 1e-6 && (there.t - place.t).abs() < 1e-6
+                    let there = spot.point;
+                    there.triangle == triangle && (there.b - b).length() < 1e-6 && (there.t - point.t).abs() < 1e-6
                 });
         });
         !found
@@ -194,7 +194,7 @@ fn a_ray_finds_every_place_of_the_shell_that_it_passes() {
 
 /// Of random prisms that fold over themselves, the share of what rays pass of them, each sheet by itself, that the stretches of
 /// rays `beside` away are off by.
-pub fn stretches_missed(beside: f64) -> f64 {
+pub fn intervals_missed(beside: f64) -> f64 {
     const STEPS: usize = 2000;
     let mut random = Stream::new(3);
     let mut unit = || f64::from(random.unit());
@@ -207,14 +207,14 @@ pub fn stretches_missed(beside: f64) -> f64 {
         let (u, v, t) = (0.5 * unit(), 0.5 * unit(), unit());
         let through: DVec3 = (0..3).map(|i| (feet[i] + offsets[i] * t) * [1.0 - u - v, u, v][i]).sum();
         let direction = DVec3::new(unit() - 0.5, unit() - 0.5, unit() - 0.5).normalize();
-        let ray = Ray::new(through - direction * 2.0, direction);
-        let away = Ray::new(ray.origin_m + direction.any_orthonormal_vector() * beside, direction);
+        let ray = DRay::new(through - direction * 2.0, direction);
+        let away = DRay::new(ray.origin_m + direction.any_orthonormal_vector() * beside, direction);
         let whole = [0.0, 4.0];
         let mut found = 0.0;
-        Sight::new(&away, 0, &(feet, offsets), [0.0, 1.0]).spans(whole, whole, |[from, to], middle| {
+        PrismRay::new(&away, 0, &(feet, offsets), [0.0, 1.0]).spans(whole, whole, |[from, to], middle| {
             found += (to - from) * middle.iter().flatten().count() as f64;
         });
-        let sight = Sight::new(&ray, 0, &(feet, offsets), [0.0, 1.0]);
+        let sight = PrismRay::new(&ray, 0, &(feet, offsets), [0.0, 1.0]);
         let step = whole[1] / STEPS as f64;
         let at = |i: usize| sight.spots(step * (i as f64 + 0.5)).iter().flatten().count();
         let expected = step * (0..STEPS).map(at).sum::<usize>() as f64;
@@ -226,7 +226,7 @@ pub fn stretches_missed(beside: f64) -> f64 {
 
 #[test]
 fn a_ray_is_followed_to_where_a_prism_folds() {
-    let missed = stretches_missed(0.0);
+    let missed = intervals_missed(0.0);
     assert!(missed < 5e-3, "{missed}");
 }
 
@@ -234,7 +234,7 @@ fn a_ray_is_followed_to_where_a_prism_folds() {
 fn between_seeds(lines: usize) -> Difference {
     let grown = thin();
     let [a, b] = [1, 2].map(|seed| by_reference([16, 16], &grown, &scenes::studio(), lines, seed));
-    compare(&Light::from(&a), &Light::from(&b)).unwrap()
+    compare(&LinearImage::from(&a), &LinearImage::from(&b)).unwrap()
 }
 
 #[test]

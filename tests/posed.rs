@@ -11,7 +11,7 @@ use furrier::data::film::Film;
 use furrier::data::strands::Strands;
 use furrier::hybrid::{Settings, draw};
 use furrier::math::{Quat, Vec3};
-use furrier::metrics::compare::{Light, compare};
+use furrier::metrics::compare::{LinearImage, compare};
 use furrier::preset::Preset;
 use predicates::prelude::*;
 
@@ -85,7 +85,7 @@ pub const NOISE: f64 = 0.007;
 
 /// Mean FLIP between neighbouring frames.
 pub fn change(frames: &[Film]) -> f64 {
-    let flip = |pair: &[Film]| compare(&Light::from(&pair[0]), &Light::from(&pair[1])).unwrap().flip;
+    let flip = |pair: &[Film]| compare(&LinearImage::from(&pair[0]), &LinearImage::from(&pair[1])).unwrap().flip;
     frames.windows(2).map(flip).sum::<f64>() / (frames.len() - 1) as f64
 }
 

@@ -6,23 +6,23 @@ use furrier::cast::Geometry;
 use furrier::cast::Rays;
 use furrier::data::film::{Film, Layers};
 use furrier::data::ray::DepthRange;
-use furrier::hybrid::resolve::{Blending, Face, composite, settle};
+use furrier::hybrid::resolve::{Appearance, Blending, composite, settle};
 use furrier::hybrid::strands::ribbon::{Narrow, Share, Window, rasterise};
-use furrier::hybrid::strands::{Fragment, Knot, Parts};
+use furrier::hybrid::strands::{Fragment, Parts, RibbonPoint};
 use furrier::hybrid::{Picture, Settings, draw};
 use furrier::math::hash::Stream;
 use furrier::math::lanes::{self, Isa};
 use furrier::math::{Vec3, radix};
 use furrier::volume::scene::Scene;
 
-pub fn covered(a: &Knot, b: &Knot) -> f64 {
+pub fn covered(a: &RibbonPoint, b: &RibbonPoint) -> f64 {
     let mut sum = 0.0;
     rasterise(a, b, Window { from: [-64, -64], to: [64, 64] }, |share| sum += f64::from(share.coverage));
     sum
 }
 
-fn knot(x: f32, y: f32, half_px: f32) -> Knot {
-    Knot { x, y, z_m: 1.0, half_px }
+fn ribbon_point(x: f32, y: f32, half_px: f32) -> RibbonPoint {
+    RibbonPoint { x, y, z_m: 1.0, half_px }
 }
 
 #[test]
@@ -34,13 +34,13 @@ fn coverage_sums_to_the_ribbons_area() {
         let half_px = libm::expf(4.0 * (2.0 * random.unit() - 1.0) - 4.0);
         let length = f64::from((a.0 - b.0).hypot(a.1 - b.1));
         let area = 2.0 * f64::from(half_px) * length;
-        let sum = covered(&knot(a.0, a.1, half_px), &knot(b.0, b.1, half_px));
+        let sum = covered(&ribbon_point(a.0, a.1, half_px), &ribbon_point(b.0, b.1, half_px));
         assert!((sum - area).abs() < 2e-3 * area + 1e-5, "{sum} of {area}");
     }
 }
 
 /// Finds the shares of a ribbon in lanes.
-struct InLanes<'a>(&'a Knot, &'a Knot, Window);
+struct InLanes<'a>(&'a RibbonPoint, &'a RibbonPoint, Window);
 
 impl lanes::Work for InLanes<'_> {
     type Output = Option<Vec<Share>>;
@@ -75,7 +75,7 @@ fn rows_in_lanes_have_the_bits_of_ribbons() {
         let mut end = || {
             let half_px = if i % 3 == 0 { 0.6 } else { 0.2 } * random.unit();
             let (x, y) = (48.0 * random.unit(), 56.0 * random.unit());
-            Knot { half_px, z_m: 1.0 + random.unit(), ..knot(x, y, half_px) }
+            RibbonPoint { half_px, z_m: 1.0 + random.unit(), ..ribbon_point(x, y, half_px) }
         };
         let (a, mut b) = (end(), end());
         match i % 8 {
@@ -96,10 +96,10 @@ fn rows_in_lanes_have_the_bits_of_ribbons() {
 
 #[test]
 fn a_hair_thinner_than_a_pixel_covers_its_share() {
-    let sum = covered(&knot(0.3, 0.0, 0.0005), &knot(0.7, 10.0, 0.0005));
+    let sum = covered(&ribbon_point(0.3, 0.0, 0.0005), &ribbon_point(0.7, 10.0, 0.0005));
     assert!((sum - 0.01).abs() < 1e-4, "{sum}");
-    assert_eq!(covered(&knot(0.3, 0.0, 0.0), &knot(0.7, 10.0, 0.0)), 0.0);
-    assert_eq!(covered(&knot(2.0, 3.0, 1.0), &knot(2.0, 3.0, 1.0)), 0.0);
+    assert_eq!(covered(&ribbon_point(0.3, 0.0, 0.0), &ribbon_point(0.7, 10.0, 0.0)), 0.0);
+    assert_eq!(covered(&ribbon_point(2.0, 3.0, 1.0), &ribbon_point(2.0, 3.0, 1.0)), 0.0);
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn a_thousand_fragments_at_one_depth_are_ordered_by_id() {
             || None,
             |f| {
                 let radiance = Vec3::splat(f.id() as f32 * 1e-3);
-                Face { z_m: f.z_m(), radiance, ..Default::default() }
+                Appearance { z_m: f.z_m(), radiance, ..Default::default() }
             },
         )
     };
@@ -139,7 +139,7 @@ fn a_pixels_fragments_are_joined_and_cut_off() {
     let of = |z_m, id, coverage| Fragment::new(z_m, id, Parts::new(coverage, 0.5), id);
     let mut fragments = [of(3.0, 8, 1.0), of(4.0, 9, 1.0), of(1.0, 7, 0.5), of(2.0, 7, 0.5)];
     let mut veil = [0.0; 4];
-    // A hair's neighbouring pieces cover the pixel once; the last one is hidden.
+    // A hair's neighbouring segments cover the pixel once; the last one is hidden.
     assert_eq!(settle(&mut fragments, &mut veil, 0.3), 2);
     assert_eq!((fragments[0].z_m(), fragments[0].id(), fragments[0].alpha(), veil[0]), (1.0, 7, 0.5, 0.5));
     assert_eq!((fragments[1].z_m(), fragments[1].id(), fragments[1].alpha(), veil[1]), (3.0, 8, 0.5, 0.25));

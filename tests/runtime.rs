@@ -8,7 +8,7 @@ use furrier::data::light::Directional;
 use furrier::error::Kind;
 use furrier::gpu::{Choice, Gpu};
 use furrier::math::{DVec3, Vec3, Vec4};
-use furrier::metrics::compare::{Difference, Light, compare, load};
+use furrier::metrics::compare::{Difference, LinearImage, compare, load};
 use furrier::runtime::gpu::Renderer;
 use furrier::runtime::{Frame, Picture, Show};
 use std::path::Path;
@@ -46,8 +46,8 @@ pub fn ball() -> Picture {
         .picture
 }
 
-fn light(picture: &Picture) -> Light {
-    Light {
+fn light(picture: &Picture) -> LinearImage {
+    LinearImage {
         width: picture.size[0] as usize,
         height: picture.size[1] as usize,
         colour: picture.pixels.iter().map(|p| Vec3::new(p[0], p[1], p[2])).collect(),
@@ -55,7 +55,7 @@ fn light(picture: &Picture) -> Light {
     }
 }
 
-fn coded(light: &Light) -> Image8 {
+fn coded(light: &LinearImage) -> Image8 {
     let mut image = Image8::new(light.width as u32, light.height as u32, 4);
     for ((out, colour), &alpha) in image.pixels.chunks_exact_mut(4).zip(&light.colour).zip(&light.alpha) {
         let straight = *colour / alpha.max(1e-6);

@@ -9,7 +9,7 @@ use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::groom::{Colour, Guard, Length, Shape, Undercoat};
 use furrier::fur::grow::skin;
 use furrier::math::{DVec3, Vec3};
-use furrier::stage::projection::View;
+use furrier::stage::projection::Projection;
 use furrier::volume::scene::{HairScattering, Lighting, Scene};
 
 /// Skin and hair that a [`Scene`] borrows.
@@ -136,6 +136,6 @@ pub fn looking(eye_m: Vec3, target_m: Vec3, up: Vec3, vfov_deg: f64) -> Camera {
 }
 
 /// What a camera sees in a picture of `size`, world coordinates.
-pub fn view(camera: &Camera, size: [usize; 2]) -> View {
-    View::new(camera, DVec3::ZERO, size).unwrap()
+pub fn view(camera: &Camera, size: [usize; 2]) -> Projection {
+    Projection::new(camera, DVec3::ZERO, size).unwrap()
 }

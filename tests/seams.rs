@@ -3,18 +3,18 @@
 use crate::common::shared;
 use crate::meshes;
 use furrier::coat::hair::TileHair;
-use furrier::coat::seams::look;
+use furrier::coat::seams::measure_coat;
 use furrier::coat::tile::TileRecipe;
 use furrier::data::mesh::Mesh;
 use furrier::data::patches::{Patches, Seams};
 use furrier::fur::field::{FieldSource, directions};
 use furrier::fur::groom::fibre::Fibre;
-use furrier::fur::patch::{Parameterisation, Place, WINDOWS, compare_seams, measure, parameterise};
+use furrier::fur::patch::{Parameterisation, SeamPoint, WINDOWS, compare_seams, measure, parameterise};
 use furrier::math::{Vec2, Vec3};
 
 const LAPPED: Parameterisation = Parameterisation::Lapped { seed: 1 };
 
-/// Shared meshes wear tiles as baked: their seams show no more than chance, whatever the seed, and are as sharp as the rest.
+/// Shared meshes carry tiles as baked: their seams show no more than chance, whatever the seed, and are as sharp as the rest.
 #[test]
 fn seams_of_real_coats_show_no_more_than_chance() {
     let Some(shared) = shared() else { return };
@@ -30,12 +30,12 @@ fn seams_of_real_coats_show_no_more_than_chance() {
         let offset: Vec<Vec3> = mesh.smooth_normals().iter().zip(&comb).map(|(&n, &c)| n * cos + c * sin).collect();
         for seed in seeds {
             let patches = parameterise(&mesh, &comb, tile.edge_m, Parameterisation::Lapped { seed }).expect("patches");
-            let seams = look(&mesh, &offset, &comb, &patches, &tile);
+            let seams = measure_coat(&mesh, &offset, &comb, &patches, &tile);
             println!("{} on {file}, seed {seed}: {seams:?}", preset.name);
             assert!(seams.difference <= 1.1 && seams.variance >= 0.9, "{file}, seed {seed}: {seams:?}");
             // Planted: hair that stands along the texture, so otherwise on each side of a seam.
             if file == "bunny_closed_6k6.glb" {
-                let seams = look(&mesh, &offset, &vec![Vec3::ZERO; comb.len()], &patches, &tile);
+                let seams = measure_coat(&mesh, &offset, &vec![Vec3::ZERO; comb.len()], &patches, &tile);
                 assert!(seams.difference > 1.1, "hair along the texture passes: {seams:?}");
             }
         }
@@ -99,7 +99,7 @@ fn tile() -> impl Fn(Vec2) -> [f32; 3] {
     }
 }
 
-fn measure_seams(mesh: &Mesh, patches: &Patches, look: impl Fn(&Place) -> Vec<[f32; 3]> + Sync) -> Seams {
+fn measure_seams(mesh: &Mesh, patches: &Patches, look: impl Fn(&SeamPoint) -> Vec<[f32; 3]> + Sync) -> Seams {
     compare_seams(mesh, [patches], 0.02, 128, WINDOWS, |_, place| look(place))[0]
 }
 
@@ -109,7 +109,7 @@ fn seams_show_no_more_than_chance_and_planted_ones_are_seen() {
     let comb = meshes::tangent(&mesh, |_| Vec3::NEG_Y);
     let patches = parameterise(&mesh, &comb, 0.02, LAPPED).expect("patches");
     let tile = tile();
-    let seen = |place: &Place| place.uv.iter().map(|&uv| tile(uv)).collect::<Vec<_>>();
+    let seen = |place: &SeamPoint| place.uv.iter().map(|&uv| tile(uv)).collect::<Vec<_>>();
     let plain = measure_seams(&mesh, &patches, seen);
     assert!(plain.edges > 50 && plain.difference < 1.1 && plain.variance > 0.9, "{plain:?}");
 
@@ -123,16 +123,17 @@ fn seams_show_no_more_than_chance_and_planted_ones_are_seen() {
             seams.insert([e, next(e)].map(|e| patches.base_vertex[corner(e) as usize]));
         }
     }
-    let at_seam = |place: &Place| seams.contains(&place.edge.0) || seams.contains(&[place.edge.0[1], place.edge.0[0]]);
+    let at_seam =
+        |place: &SeamPoint| seams.contains(&place.edge.0) || seams.contains(&[place.edge.0[1], place.edge.0[0]]);
     // Sides of seams differ in brightness, as seen by which way the texture runs there: the seams show.
-    let bright = |place: &Place| {
+    let bright = |place: &SeamPoint| {
         let more = if at_seam(place) { 0.3 * (place.uv[0].x * 7.0).sin() } else { 0.0 };
         seen(place).into_iter().map(|s| s.map(|x| x + more)).collect::<Vec<_>>()
     };
     let shown = measure_seams(&mesh, &patches, bright);
     assert!(shown.difference > 1.5, "{shown:?}");
     // Blurred along seams: no difference, but no hair either.
-    let blur = |place: &Place| if at_seam(place) { vec![[0.5; 3]; place.uv.len()] } else { seen(place) };
+    let blur = |place: &SeamPoint| if at_seam(place) { vec![[0.5; 3]; place.uv.len()] } else { seen(place) };
     let blurred = measure_seams(&mesh, &patches, blur);
     assert!(blurred.difference < 1.1 && blurred.variance < 0.9, "{blurred:?}");
 }

@@ -2,7 +2,7 @@
 
 use furrier::gpu::light::LightItem;
 use furrier::gpu::{Source, compose};
-use furrier::hybrid::gpu::items::{InsideItem, StrandItem, StretchItem, TriangleItem, VertexItem};
+use furrier::hybrid::gpu::items::{InsideItem, StrandItem, TriangleItem, VertexItem, VirtualFragmentItem};
 use furrier::hybrid::gpu::kernels;
 use furrier::hybrid::gpu::layout::{
     BlocksUniform, KindUniform, LobeUniform, SceneUniform, ViewUniform as CameraUniform,
@@ -208,12 +208,12 @@ fn structs_of_kernels_lie_as_in_rust() {
                 centre_px,
                 size,
                 rows,
-                most_stretches,
+                most_virtual_fragments,
                 padding
             }),
         ),
         (&march, "Inside", in_rust!(InsideItem { b, t, triangle })),
-        (&march, "Stretch", in_rust!(StretchItem { radiance, from_m, to_m, depth, faces, next })),
+        (&march, "VirtualFragment", in_rust!(VirtualFragmentItem { radiance, from_m, to_m, depth, faces, next })),
         (&density, "Blocks", in_rust!(BlocksUniform { columns, count })),
     ] {
         assert_eq!(in_shader(module, name), Some(rust), "{name}");

@@ -8,16 +8,16 @@ use furrier::hybrid::{Settings, draw};
 use furrier::math::Vec3;
 use furrier::math::lanes::{self, F32s, Isa, Vec3s, Work};
 use furrier::preset::Preset;
-use furrier::reference::bvh::Ray;
-use furrier::reference::medium::{Counted, Medium};
-use furrier::reference::point::ShellPoint;
-use furrier::reference::skin::Skin;
+use furrier::reference::bvh::DRay;
+use furrier::reference::medium::{Counted, DMedium};
+use furrier::reference::point::DShellPoint;
+use furrier::reference::skin::SkinBvh;
 use furrier::volume::mean::MeanShadow;
 use furrier::volume::scene::{Layer, Scene};
 use furrier::volume::shell::block::code;
 use furrier::volume::shell::lattice::{self, Lattice, Lattices};
 
-/// What a lattice holds at a place, in the first lane.
+/// What a lattice holds at a point, in the first lane.
 struct Read<'a> {
     lattice: &'a Lattice,
     layers: u32,
@@ -42,8 +42,8 @@ fn stored_shadows_are_linear_between_corners_and_levels() {
     let depth = |b: Vec3, t: f32| 1.0 + 2.0 * b.y + 0.5 * b.z + 1.5 * t;
     for d in 0..4 {
         let column = |b: Vec3| (0..=layers).map(move |i| code(depth(b, i as f32 / layers as f32)));
-        assert_eq!(lattice::places(d).count(), lattice::corners(d) as usize);
-        let stored = Lattice::of_codes(d, lattice::places(d).flat_map(column).collect());
+        assert_eq!(lattice::points(d).count(), lattice::corners(d) as usize);
+        let stored = Lattice::of_codes(d, lattice::points(d).flat_map(column).collect());
         for (b, t) in [
             (Vec3::new(1.0, 0.0, 0.0), 0.0),
             (Vec3::new(0.0, 1.0, 0.0), 1.0),
@@ -86,7 +86,7 @@ fn mean_shadow_is_a_flat_layers_far_from_borders_and_nothing_on_one_towards_the_
     }
     let border = scene.skin.positions_m.iter().map(|p| p.x).fold(f32::MIN, f32::max);
     let of_columns = shadow.of_columns();
-    // No two vertices are at one place: column after column is over vertex after vertex.
+    // No two vertices are at one point: column after column is over vertex after vertex.
     let per_column = of_columns.len() / scene.skin.positions_m.len();
     for (v, p) in scene.skin.positions_m.iter().enumerate().filter(|(_, p)| p.x == border) {
         let depths = &of_columns[v * per_column..(v + 1) * per_column];
@@ -114,7 +114,7 @@ fn no_hair_shows_through_the_bare_side() {
     assert!(worst < 0.02, "{worst}");
 }
 
-/// Light that the key light's shadow lets through over a place of every seventh triangle of a hat, at three heights: what
+/// Light that the key light's shadow lets through over a point of every seventh triangle of a hat, at three heights: what
 /// `shadow`, of columns `span` apart, has against the reference's medium, as the mean size of the difference.
 fn strays_on_a_hat(b: Vec3, span: f32, shadow: impl Fn(&MeanShadow<'_>, &Scene<'_>, u32, f32, f32) -> f32) -> f64 {
     let mut preset = Preset::load("mink").unwrap();
@@ -132,8 +132,8 @@ fn strays_on_a_hat(b: Vec3, span: f32, shadow: impl Fn(&MeanShadow<'_>, &Scene<'
     let scene = grown.scene();
     let to_light = studio(&framing(&grown, 35.0, 20.0, 1.0, [1, 1])).mean_direction(scene.skin);
     let normals = scene.skin.smooth_normals();
-    let medium = Medium::new(&scene, &normals, None).unwrap();
-    let skin = Skin::new(scene.skin);
+    let medium = DMedium::new(&scene, &normals, None).unwrap();
+    let skin = SkinBvh::new(scene.skin);
     let mean = MeanShadow::new(&scene, to_light, span).unwrap();
     let (mut strays, mut count) = (0.0, 0.0);
     for triangle in (0..scene.skin.triangles.len() as u32).step_by(7) {
@@ -143,8 +143,8 @@ fn strays_on_a_hat(b: Vec3, span: f32, shadow: impl Fn(&MeanShadow<'_>, &Scene<'
         }
         for share in [0.25_f32, 0.5, 0.75] {
             let t = share / mean.share(medium.shell.undercoat.height_m, 1.0);
-            let place = ShellPoint { triangle, b: b.as_dvec3(), t: f64::from(t) };
-            let ray = Ray::new(medium.slabs.position_m(&place), to_light.as_dvec3());
+            let point = DShellPoint { triangle, b: b.as_dvec3(), t: f64::from(t) };
+            let ray = DRay::new(medium.slabs.position_m(&point), to_light.as_dvec3());
             let to_m = skin.meet(&ray, 1e-7).map_or(f64::INFINITY, |(at_m, _)| at_m);
             let expected = medium.depth_along(&ray, 1e-9, to_m, Counted::Both, 15.0);
             let found = f64::from(shadow(&mean, &scene, triangle, share, cosine));

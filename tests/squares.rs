@@ -97,7 +97,7 @@ pub fn film(range: DepthRange) -> Film {
     let mut guard = grow::tile::grow(&Fibre::guard(&guard, &Colour::default(), 1.0), EDGE_M, 3);
     let worn = Mat3::from_cols(Vec3::X, Vec3::Y, Vec3::new(0.3, 0.0, 0.9));
     guard.points_m.iter_mut().for_each(|p| *p = worn * *p);
-    let medium = Medium::new(&hair(), Some(Pattern::default()), EDGE_M).unwrap().worn(worn);
+    let medium = Medium::new(&hair(), Some(Pattern::default()), EDGE_M).unwrap().mapped(worn);
     let scene = Geometry {
         guard: Some(&guard),
         medium: Some(&medium),

@@ -5,7 +5,7 @@ use furrier::data::coat::{Coat, CoatPrimitive, FinEdge, FinTexture, Sampled, She
 use furrier::data::image::Image8;
 use furrier::math::{Vec2, Vec3, Vec4};
 
-/// A tile of 5 layers of 4² with one mip level, and a quad that wears it with one fin.
+/// A tile of 5 layers of 4² with one mip level, and a quad that carries it with one fin.
 fn coat() -> Coat {
     let image = |channels| vec![vec![Image8::new(4, 4, channels); 5]];
     let shells = ShellStack {

@@ -5,7 +5,7 @@ use furrier::data::film::Film;
 use furrier::hybrid::strands::thin::Thinning;
 use furrier::hybrid::{Settings, draw};
 use furrier::math::Vec3;
-use furrier::metrics::compare::{Light, compare};
+use furrier::metrics::compare::{LinearImage, compare};
 
 const SIZE: [usize; 2] = [64, 64];
 
@@ -44,7 +44,7 @@ fn fewer_hairs_cover_as_much_and_are_as_bright() {
     let (whole, thinned) = whole_and_thinned(1.0);
     let more = more_guard(&whole, &thinned);
     assert!(more.abs() < 0.02, "guard hair covers {more} more");
-    let difference = compare(&Light::from(&whole), &Light::from(&thinned)).unwrap();
+    let difference = compare(&LinearImage::from(&whole), &LinearImage::from(&thinned)).unwrap();
     println!("{more} {difference:?}");
     assert!(difference.bias.abs() < 0.02 && difference.flip < 0.08, "{difference:?}");
     assert!((thinned.coverage() - whole.coverage()).abs() < 0.005);

@@ -16,7 +16,7 @@ const SHELLS: Show = Show { skin: false, shells: true, fins: false };
 
 /// Parallel rays through the plane z = 0, and how hair stands there.
 #[derive(Clone, Copy)]
-struct Look {
+struct Standing {
     /// Of the rays.
     theta_deg: f32,
     phi_deg: f32,
@@ -30,7 +30,7 @@ struct Look {
     density: f32,
 }
 
-impl Look {
+impl Standing {
     fn new(theta_deg: f32, phi_deg: f32, lean_deg: f32) -> Self {
         Self { theta_deg, phi_deg, lean_deg, length: 1.0, tiles: 1.0, texture: Mat2::IDENTITY, density: 1.0 }
     }
@@ -67,40 +67,40 @@ pub fn oblique(direction: Vec3, edge_m: f32) -> Frame {
     }
 }
 
-fn on_cpu(tile: &Tile, look: &Look) -> Vec<f32> {
+fn on_cpu(tile: &Tile, standing: &Standing) -> Vec<f32> {
     let stack = Stack::new(tile);
-    let pixel = look.tiles / PIXELS as f32;
+    let pixel = standing.tiles / PIXELS as f32;
     let seen = match tile.sampled {
         Sampled::Square => {
-            let map = Mat3::from_cols(Vec3::X, Vec3::Y, look.up());
-            Incidence::new(look.direction(), map, pixel).on_texture(look.texture)
+            let map = Mat3::from_cols(Vec3::X, Vec3::Y, standing.up());
+            Incidence::new(standing.direction(), map, pixel).on_texture(standing.texture)
         }
         // What one unit of the texture is on the plane.
         Sampled::Skin => {
-            let axes = look.texture.inverse();
-            let map = Mat3::from_cols(axes.x_axis.extend(0.0), axes.y_axis.extend(0.0), look.up());
-            Incidence::new(look.direction(), map, pixel)
+            let axes = standing.texture.inverse();
+            let map = Mat3::from_cols(axes.x_axis.extend(0.0), axes.y_axis.extend(0.0), standing.up());
+            Incidence::new(standing.direction(), map, pixel)
         }
     };
     let at = |i: u32| {
         let (x, y) = (i % PIXELS, PIXELS - 1 - i / PIXELS);
-        look.texture * (Vec2::new(x as f32 + 0.5, y as f32 + 0.5) * pixel - 0.5 * look.tiles)
+        standing.texture * (Vec2::new(x as f32 + 0.5, y as f32 + 0.5) * pixel - 0.5 * standing.tiles)
     };
-    let t = (look.length / FADE_BELOW).min(1.0);
-    let present = look.density * t * t * (3.0 - 2.0 * t);
+    let t = (standing.length / FADE_BELOW).min(1.0);
+    let present = standing.density * t * t * (3.0 - 2.0 * t);
     let depth = |i: u32| present * stack.gain(&seen) * stack.optical_depth(at(i), &seen);
     (0..PIXELS * PIXELS).map(|i| -f32::exp_m1(-depth(i))).collect()
 }
 
-fn on_gpu(renderer: &Renderer<'_>, tiles: &[Tile], look: &Look) -> Picture {
+fn on_gpu(renderer: &Renderer<'_>, tiles: &[Tile], standing: &Standing) -> Picture {
     // Large enough that slanting rays do not pass beside it.
     let mut plane = coats::plane(tiles[0].edge_m * 40.0, 60, 0.0, &tiles[0]);
-    plane.uv.iter_mut().for_each(|uv| *uv = look.texture * *uv);
-    plane.offsets_m.iter_mut().for_each(|offset| *offset = look.up() * tiles[0].height_m);
-    plane.tint.iter_mut().for_each(|tint| tint.w = look.density);
+    plane.uv.iter_mut().for_each(|uv| *uv = standing.texture * *uv);
+    plane.offsets_m.iter_mut().for_each(|offset| *offset = standing.up() * tiles[0].height_m);
+    plane.tint.iter_mut().for_each(|tint| tint.w = standing.density);
     let mut scene = plane.scene(tiles);
     scene.furs[0].axes = vec![Vec3::X; plane.uv.len()];
-    let view = oblique(look.direction(), look.tiles * tiles[0].edge_m);
+    let view = oblique(standing.direction(), standing.tiles * tiles[0].edge_m);
     renderer.prepare(&scene).unwrap().draw(&view, SHELLS).unwrap().picture
 }
 
@@ -120,15 +120,15 @@ fn coverage(of: &[f32]) -> f32 {
     of.iter().sum::<f32>() / of.len() as f32
 }
 
-/// Holds both to each other at every look.
-fn hold(tile: Tile, looks: &[Look]) {
+/// Holds both to each other at every standing.
+fn hold(tile: Tile, standings: &[Standing]) {
     let gpu = Gpu::open(&Choice::Auto).unwrap();
     let tiles = [tile];
     let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
-    for look in looks {
-        let cpu = on_cpu(&tiles[0], look);
-        let (mean, rms) = difference(&cpu, &on_gpu(&renderer, &tiles, look));
-        let Look { theta_deg, lean_deg, length, tiles, .. } = look;
+    for standing in standings {
+        let cpu = on_cpu(&tiles[0], standing);
+        let (mean, rms) = difference(&cpu, &on_gpu(&renderer, &tiles, standing));
+        let Standing { theta_deg, lean_deg, length, tiles, .. } = standing;
         let said = format!("{theta_deg}°, lean {lean_deg}°, length {length}, {tiles} tiles");
         println!("{said}: coverage {:.3}, mean {mean:+.4}, rms {rms:.4}", coverage(&cpu));
         assert!(alike((mean, rms)), "coverage at {said}: {mean} in the mean, {rms} by pixel");
@@ -143,8 +143,8 @@ const ANGLES: [(f32, f32); 5] = [(0.0, 0.0), (20.0, 70.0), (40.0, 160.0), (60.0,
 
 #[test]
 fn the_law_is_the_same_on_both() {
-    let looks = [0.0, 30.0].map(|lean| ANGLES.map(|(theta, phi)| Look::new(theta, phi, lean)));
-    hold(tile(), looks.as_flattened());
+    let standings = [0.0, 30.0].map(|lean| ANGLES.map(|(theta, phi)| Standing::new(theta, phi, lean)));
+    hold(tile(), standings.as_flattened());
 }
 
 /// Between mips, each of which has a scale of its own, and with gains that differ from angle to angle and from mip to mip.
@@ -155,35 +155,40 @@ fn the_law_is_the_same_between_mips() {
     tile.shells.gains.iter_mut().flatten().for_each(|gain| *gain = 0.6 + 0.8 * stream.unit());
     let scales = &tile.shells.extinction_scales_per_m;
     assert!(scales[0] > 1.5 * scales[2], "scales that differ little tell little: {scales:?}");
-    let looks = [1.4, 2.83, 5.2].map(|tiles| [20.0, 60.0].map(|theta| Look { tiles, ..Look::new(theta, 70.0, 15.0) }));
-    hold(tile, looks.as_flattened());
+    let standings =
+        [1.4, 2.83, 5.2].map(|tiles| [20.0, 60.0].map(|theta| Standing { tiles, ..Standing::new(theta, 70.0, 15.0) }));
+    hold(tile, standings.as_flattened());
 }
 
 /// Near the skin's plane: rays that graze it, hair that lies on it, hair that is hardly there or not at all.
 #[test]
 fn the_law_is_the_same_at_its_guards() {
-    let mut looks: Vec<Look> = [80.0, 85.0, 88.0]
-        .map(|lean| Look::new(30.0, 40.0, lean))
+    let mut standings: Vec<Standing> = [80.0, 85.0, 88.0]
+        .map(|lean| Standing::new(30.0, 40.0, lean))
         .into_iter()
-        .chain([Look::new(86.0, 30.0, 0.0)])
+        .chain([Standing::new(86.0, 30.0, 0.0)])
         .collect();
-    looks.push(Look::new(80.0, 190.0, 80.0));
-    looks.extend([0.5, 0.006, 0.0].map(|length| Look { length, density: 0.7, ..Look::new(40.0, 100.0, 20.0) }));
-    hold(tile(), &looks);
+    standings.push(Standing::new(80.0, 190.0, 80.0));
+    standings.extend([0.5, 0.006, 0.0].map(|length| Standing {
+        length,
+        density: 0.7,
+        ..Standing::new(40.0, 100.0, 20.0)
+    }));
+    hold(tile(), &standings);
 }
 
 /// Texels sampled on the skin: hair stands as its texture lies, tint does not count, nothing repeats.
 #[test]
 fn the_law_is_the_same_on_texels_of_the_skin() {
     let texture = Mat2::from_angle(0.4) * Mat2::from_diagonal(Vec2::new(0.5, 0.4));
-    let looks = ANGLES.map(|(theta, phi)| Look { texture, ..Look::new(theta, phi, 25.0) });
+    let standings = ANGLES.map(|(theta, phi)| Standing { texture, ..Standing::new(theta, phi, 25.0) });
     let sampled = Tile { sampled: Sampled::Skin, ..tile() };
-    hold(sampled.clone(), &looks);
+    hold(sampled.clone(), &standings);
     let gpu = Gpu::open(&Choice::Auto).unwrap();
     let tiles = [sampled];
     let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
-    let tinted = Look { density: 0.1, ..looks[2] };
-    assert_eq!(on_gpu(&renderer, &tiles, &tinted).pixels, on_gpu(&renderer, &tiles, &looks[2]).pixels);
+    let tinted = Standing { density: 0.1, ..standings[2] };
+    assert_eq!(on_gpu(&renderer, &tiles, &tinted).pixels, on_gpu(&renderer, &tiles, &standings[2]).pixels);
 }
 
 /// A texture that lies turned and stretched shows as much hair, which leans and shines as it does elsewhere.
@@ -194,9 +199,9 @@ fn hair_stands_the_same_however_its_texture_lies() {
     let renderer = Renderer::new(&gpu, &tiles, 1).unwrap();
     let texture = Mat2::from_angle(0.4) * Mat2::from_diagonal(Vec2::new(1.25, 0.85));
     for (theta, phi) in [(20.0, 70.0), (40.0, 160.0), (60.0, 250.0)] {
-        let look = Look::new(theta, phi, 30.0);
-        let turned = Look { texture, ..look };
-        let (plain, cpu) = (on_cpu(&tiles[0], &look), on_cpu(&tiles[0], &turned));
+        let standing = Standing::new(theta, phi, 30.0);
+        let turned = Standing { texture, ..standing };
+        let (plain, cpu) = (on_cpu(&tiles[0], &standing), on_cpu(&tiles[0], &turned));
         let picture = on_gpu(&renderer, &tiles, &turned);
         let found = difference(&cpu, &picture);
         println!("theta {theta}: {:.3} plain, {:.3} turned, {found:?}", coverage(&plain), coverage(&cpu));
@@ -225,13 +230,13 @@ pub const PLANTED: [Fault; 4] = [Fault::Scale, Fault::Gain, Fault::Lean, Fault::
 /// What the comparison says of a fault: the sound law against the faulty one, both on the CPU.
 pub fn planted(fault: Fault) -> (f32, f32) {
     let (sound, mut faulty) = (tile(), tile());
-    let between = Look { tiles: 2.83, ..Look::new(20.0, 70.0, 15.0) };
-    let (look, other) = match fault {
+    let between = Standing { tiles: 2.83, ..Standing::new(20.0, 70.0, 15.0) };
+    let (standing, other) = match fault {
         Fault::Scale | Fault::Gain => (between, between),
-        Fault::Lean => (Look::new(80.0, 190.0, 80.0), Look::new(80.0, 190.0, 78.0)),
+        Fault::Lean => (Standing::new(80.0, 190.0, 80.0), Standing::new(80.0, 190.0, 78.0)),
         Fault::Presence => {
-            let gone = Look { length: 0.006, ..Look::new(40.0, 100.0, 20.0) };
-            (gone, Look { length: 0.02, ..gone })
+            let gone = Standing { length: 0.006, ..Standing::new(40.0, 100.0, 20.0) };
+            (gone, Standing { length: 0.02, ..gone })
         }
     };
     match fault {
@@ -240,5 +245,5 @@ pub fn planted(fault: Fault) -> (f32, f32) {
         Fault::Lean | Fault::Presence => {}
     }
     let pixels = on_cpu(&faulty, &other).iter().map(|&alpha| [0.0, 0.0, 0.0, alpha]).collect();
-    difference(&on_cpu(&sound, &look), &Picture { size: [PIXELS; 2], pixels, depth_m: Vec::new() })
+    difference(&on_cpu(&sound, &standing), &Picture { size: [PIXELS; 2], pixels, depth_m: Vec::new() })
 }

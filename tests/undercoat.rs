@@ -13,10 +13,10 @@ use furrier::math::lanes::{F32s, Scalar, Vec3s};
 use furrier::math::{DVec2, DVec3, Mat3, Vec3};
 use furrier::volume::march::content::{Content, Resolution};
 use furrier::volume::march::volume::Volume;
-use furrier::volume::march::{Journey, Start, Stepping};
+use furrier::volume::march::{MarchRay, Start, Stepping};
 use furrier::volume::medium::Medium;
 use furrier::volume::scene::{HairScattering, Scene};
-use furrier::volume::shell::prism::Place;
+use furrier::volume::shell::prism::ShellPoint;
 use furrier::volume::shell::subelement;
 
 /// Upright or leaning cylinders of one length, whose ends are flat.
@@ -144,7 +144,7 @@ pub fn depth_of_volume(hairs: &Cylinders, direction: DVec3) -> f64 {
 pub fn depth_of_square(hairs: &Cylinders, direction: DVec3) -> f64 {
     let lean = hairs.lean.as_vec3();
     let worn = Mat3::from_cols(Vec3::X, Vec3::Y, lean);
-    let medium = Medium::new(&fibre(hairs), None, (4.0 * hairs.length_m) as f32).unwrap().worn(worn);
+    let medium = Medium::new(&fibre(hairs), None, (4.0 * hairs.length_m) as f32).unwrap().mapped(worn);
     let origin_m = lean * hairs.length_m as f32 + Vec3::Z * 1e-6;
     let ray = Ray { origin_m, direction: direction.as_vec3() };
     f64::from(medium.depth_along(&ray, DepthRange::ALL, f32::INFINITY))
@@ -159,11 +159,11 @@ fn depth_of_scene(scene: &Scene<'_>, direction: DVec3) -> f64 {
     let volume = Volume::new(&content, subdivisions);
     // A triangle near the middle, entered at its top.
     let triangle = mesh.triangles.len() as u32 / 2 + 8;
-    let place = Place { b: [0.3, 0.3], t: 1.0 };
-    let origin_m = volume.shell().prism(triangle).jacobian(&place).at_m;
-    let start = Start { at_m: 0.0, triangle, place };
-    let journey = Journey { origin_m, direction: direction.as_vec3(), start, far_m: f32::INFINITY };
-    let (depths, _) = volume.depths_along(&[journey], &Stepping::default(), 0.0, f32::INFINITY);
+    let point = ShellPoint { b: [0.3, 0.3], t: 1.0 };
+    let origin_m = volume.shell().prism(triangle).jacobian(&point).at_m;
+    let start = Start { at_m: 0.0, triangle, point };
+    let march_ray = MarchRay { origin_m, direction: direction.as_vec3(), start, far_m: f32::INFINITY };
+    let (depths, _) = volume.depths_along(&[march_ray], &Stepping::default(), 0.0, f32::INFINITY);
     f64::from(depths[0])
 }
 

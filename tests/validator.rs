@@ -2,7 +2,7 @@
 
 use crate::common::{shared, skipped};
 use crate::made::coat_for;
-use furrier::asset::coat::{NAME, dress};
+use furrier::asset::coat::{NAME, with_coat};
 use furrier::asset::{self, Asset, Fallback, write_coat};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -38,15 +38,15 @@ fn schema_faults(json: &Value) -> Vec<String> {
 fn outputs_follow_the_schema() {
     for name in ["creature", "sphere"] {
         let asset = asset::load(&format!("sample:{name}")).expect("a sample");
-        let dressed = dress(&asset, &coat_for(&asset), Fallback::Shells(4)).expect("it can be dressed");
-        assert_eq!(schema_faults(&dressed.json), Vec::<String>::new());
+        let coated = with_coat(&asset, &coat_for(&asset), Fallback::Shells(4)).expect("it takes a coat");
+        assert_eq!(schema_faults(&coated.json), Vec::<String>::new());
     }
 }
 
 #[test]
 fn the_schema_sees_planted_faults() {
     let asset = asset::load("sample:plane").expect("a sample");
-    let good = dress(&asset, &coat_for(&asset), Fallback::Shells(2)).expect("it can be dressed").json;
+    let good = with_coat(&asset, &coat_for(&asset), Fallback::Shells(2)).expect("it takes a coat").json;
     let root = format!("/extensions/{NAME}");
     let primitive = format!("/meshes/0/primitives/0/extensions/{NAME}");
     for (pointer, planted) in [
@@ -147,7 +147,7 @@ fn the_khronos_validator_finds_nothing_new() {
 fn the_validator_sees_planted_faults() {
     let folder = tempfile::tempdir().expect("a folder");
     let asset = asset::load("sample:plane").expect("a sample");
-    let mut bad = dress(&asset, &coat_for(&asset), Fallback::Shells(2)).expect("dressed");
+    let mut bad = with_coat(&asset, &coat_for(&asset), Fallback::Shells(2)).expect("it takes a coat");
     bad.json["extensionsUsed"] = json!(["KHR_materials_unlit"]);
     bad.json["meshes"][1]["primitives"][0]["material"] = json!(99);
     let files = ["good.glb", "bad.glb"].map(|name| folder.path().join(name));

@@ -8,9 +8,9 @@ use furrier::math::{Vec2, Vec3, Vec4};
 use furrier::runtime::{Picture, Show};
 use furrier::stage::camera::{Orbit, Viewpoint};
 use furrier::stage::options;
-use furrier::viewer::{self, Chart, Options, Subject, parse_show, stage};
+use furrier::viewer::{self, Chart, Subject, ViewOptions, parse_show, stage};
 
-/// `tile` worn on every part of `asset` that is not bare, hair along the normals, no fins.
+/// `tile` carried on every part of `asset` that is not bare, hair along the normals, no fins.
 fn dressed(asset: &Asset, tile: Tile) -> Coat {
     let mut coat = Coat { metres_per_unit: 1.0, ..Coat::default() };
     for part in asset.parts.iter().filter(|part| !asset::is_bare(&part.material_name)) {
@@ -42,12 +42,12 @@ fn creature() -> (Asset, Coat) {
     (asset, coat)
 }
 
-fn small() -> Options {
+fn small() -> ViewOptions {
     staged([96, 72], Viewpoint::default())
 }
 
-fn staged(size: [u32; 2], viewpoint: Viewpoint) -> Options {
-    Options { stage: options::Options { size, viewpoint, ..options::Options::default() }, ..Options::default() }
+fn staged(size: [u32; 2], viewpoint: Viewpoint) -> ViewOptions {
+    ViewOptions { stage: options::Options { size, viewpoint, ..options::Options::default() }, ..ViewOptions::default() }
 }
 
 /// The rows and columns that hold anything: top, bottom, left, right.
@@ -90,7 +90,7 @@ fn shells_move_with_the_skin() {
     let camera = Camera { eye: at(eye), target: at(middle), up: [0.0, 1.0, 0.0], vfov_deg: 40.0 };
     let shot = |seconds: Option<f64>, show: Show| {
         let moment = seconds.map(|s| (animation.clone(), s));
-        let options = Options { show: Subject::Coat(show), moment, ..staged([96, 72], Viewpoint::Camera(camera)) };
+        let options = ViewOptions { show: Subject::Coat(show), moment, ..staged([96, 72], Viewpoint::Camera(camera)) };
         viewer::screenshot(&asset, &coat, &options).unwrap().picture
     };
     let difference =
@@ -175,7 +175,7 @@ fn flags_are_read_or_refused() {
 
 /// Share of the seen pixels that `wanted` finds in a chart of the creature.
 fn charted(coat: &Coat, asset: &Asset, chart: Chart, wanted: impl Fn(Vec3) -> bool) -> (f64, Vec<String>) {
-    let options = Options { show: Subject::Chart(chart), ..staged([320, 240], Viewpoint::default()) };
+    let options = ViewOptions { show: Subject::Chart(chart), ..staged([320, 240], Viewpoint::default()) };
     let shot = viewer::screenshot(asset, coat, &options).unwrap();
     let seen: Vec<Vec3> =
         shot.picture.pixels.iter().filter(|p| p[3] > 0.99).map(|p| Vec3::new(p[0], p[1], p[2])).collect();

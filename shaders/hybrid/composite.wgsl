@@ -1,18 +1,18 @@
 // Guard hair, undercoat and skin of every pixel into one colour, front to back (Andersen et al. 2016 §3.3, docs/steps/blend.md).
-#import furrier::constants::{LOOKS, MOST_BEND}
+#import furrier::constants::{LIT_POINTS, MOST_BEND}
 #import furrier::scene::{scene, triangles, vertices, strands, point_of, unit_or}
 #import furrier::camera::{view, pixel_count, pixel_of, direction_through, ray_through, camera_from_world, flat_of, meet,
     skin_triangle, heads}
 #import furrier::guard::{guard_ramp, opacity_at, along_hair}
 #import furrier::fragments::{Fragment, read_from, next_fragment}
-#import furrier::stretch::{NO_STRETCH, Stretch, unpack_albedo, unpack_tangent}
-#import furrier::skin_look::skin_look
+#import furrier::virtual_fragment::{NO_VIRTUAL_FRAGMENT, VirtualFragment, unpack_albedo, unpack_tangent}
+#import furrier::skin_light::skin_light
 
 // Equation (4) in place of virtual fragments.
 override SIMPLIFIED: bool = false;
 
-@group(3) @binding(4) var<storage, read> stretches: array<Stretch>;
-@group(3) @binding(5) var<storage, read> looks: array<f32>;
+@group(3) @binding(4) var<storage, read> virtual_fragments: array<VirtualFragment>;
+@group(3) @binding(5) var<storage, read> log_radiance: array<f32>;
 // Four planes of the band's pixels: radiance and alpha; albedo and distance; tangent and guard hair's part of alpha; normal and
 // undercoat's.
 @group(3) @binding(6) var<storage, read_write> film: array<vec4<f32>>;
@@ -29,24 +29,24 @@ struct Front {
     undercoat: f32,
 }
 
-// Logarithm of the opaque hair's radiance: shadow, and radiance with it, goes exponentially from look to look.
-fn log_look(index: u32) -> vec3<f32> {
-    return vec3(looks[3u * index], looks[3u * index + 1u], looks[3u * index + 2u]);
+// Logarithm of the opaque hair's radiance: shadow, and radiance with it, goes exponentially from lit point to lit point.
+fn log_radiance_at(index: u32) -> vec3<f32> {
+    return vec3(log_radiance[3u * index], log_radiance[3u * index + 1u], log_radiance[3u * index + 2u]);
 }
 
 fn bend_at(index: u32) -> vec3<f32> {
-    return log_look(index - 1u) - 2.0 * log_look(index) + log_look(index + 1u);
+    return log_radiance_at(index - 1u) - 2.0 * log_radiance_at(index) + log_radiance_at(index + 1u);
 }
 
-// Radiance of a strand at s in [0, 1] along it: its logarithm is a curve through the looks.
+// Radiance of a strand at s in [0, 1] along it: its logarithm is a curve through the lit points.
 fn radiance_at(strand: u32, s: f32) -> vec3<f32> {
-    let at = s * s * f32(LOOKS - 1u);
-    let low = min(u32(at), LOOKS - 2u);
+    let at = s * s * f32(LIT_POINTS - 1u);
+    let low = min(u32(at), LIT_POINTS - 2u);
     let part = at - f32(low);
-    let first = strand * LOOKS;
-    let line = mix(log_look(first + low), log_look(first + low + 1u), part);
-    // From the middle of three looks; at the ends the nearest three.
-    let bend = bend_at(first + max(low, 1u)) + bend_at(first + min(low + 1u, LOOKS - 2u));
+    let first = strand * LIT_POINTS;
+    let line = mix(log_radiance_at(first + low), log_radiance_at(first + low + 1u), part);
+    // From the middle of three lit points; at the ends the nearest three.
+    let bend = bend_at(first + max(low, 1u)) + bend_at(first + min(low + 1u, LIT_POINTS - 2u));
     return exp(line - clamp(bend, vec3(-2.0 * MOST_BEND), vec3(2.0 * MOST_BEND)) * (part - part * part) * 0.25);
 }
 
@@ -67,24 +67,24 @@ fn add_hair(front: ptr<function, Front>, fragment: Fragment) {
     (*front).through -= weight;
 }
 
-fn add_undercoat(front: ptr<function, Front>, stretch: Stretch, alpha: f32, z_m: f32) {
+fn add_undercoat(front: ptr<function, Front>, virtual_fragment: VirtualFragment, alpha: f32, z_m: f32) {
     let weight = (*front).through * alpha;
-    (*front).radiance += weight * stretch.radiance;
-    (*front).albedo += weight * unpack_albedo(stretch.faces);
-    (*front).tangent += weight * unpack_tangent(stretch.faces);
+    (*front).radiance += weight * virtual_fragment.radiance;
+    (*front).albedo += weight * unpack_albedo(virtual_fragment.faces);
+    (*front).tangent += weight * unpack_tangent(virtual_fragment.faces);
     (*front).z_m += weight * z_m;
     (*front).undercoat += weight;
     (*front).through -= weight;
 }
 
-// The part of a stretch between two depths.
-fn add_part(front: ptr<function, Front>, stretch: Stretch, from_m: f32, to_m: f32) {
-    let extent = stretch.to_m - stretch.from_m;
+// The part of a virtual fragment between two depths.
+fn add_part(front: ptr<function, Front>, virtual_fragment: VirtualFragment, from_m: f32, to_m: f32) {
+    let extent = virtual_fragment.to_m - virtual_fragment.from_m;
     var share = 1.0;
     if extent > 0.0 {
         share = (to_m - from_m) / extent;
     }
-    add_undercoat(front, stretch, 1.0 - exp(-stretch.depth * share), 0.5 * (from_m + to_m));
+    add_undercoat(front, virtual_fragment, 1.0 - exp(-virtual_fragment.depth * share), 0.5 * (from_m + to_m));
 }
 
 fn add_skin(front: ptr<function, Front>, at: u32, middle: vec2<f32>) {
@@ -102,11 +102,11 @@ fn add_skin(front: ptr<function, Front>, at: u32, middle: vec2<f32>) {
     if !meeting.met {
         return;
     }
-    let look = skin_look(~named, meeting.barycentric, direction_through(middle));
+    let appearance = skin_light(~named, meeting.barycentric, direction_through(middle));
     let weight = (*front).through;
-    (*front).radiance += weight * look.radiance;
-    (*front).albedo += weight * look.albedo;
-    (*front).normal += weight * look.normal;
+    (*front).radiance += weight * appearance.radiance;
+    (*front).albedo += weight * appearance.albedo;
+    (*front).normal += weight * appearance.normal;
     (*front).z_m += weight * meeting.z_m;
     (*front).through = 0.0;
 }
@@ -139,39 +139,39 @@ fn composite(
     var reader = read_from(at);
     var fragment = next_fragment(&reader);
     var index = heads[at];
-    while index != NO_STRETCH && front.through >= scene.opaque {
-        let stretch = stretches[index];
-        while fragment.real && fragment.z_m <= stretch.from_m && front.through >= scene.opaque {
+    while index != NO_VIRTUAL_FRAGMENT && front.through >= scene.opaque {
+        let virtual_fragment = virtual_fragments[index];
+        while fragment.real && fragment.z_m <= virtual_fragment.from_m && front.through >= scene.opaque {
             add_hair(&front, fragment);
             fragment = next_fragment(&reader);
         }
         if SIMPLIFIED {
-            var alpha = 1.0 - exp(-stretch.depth);
+            var alpha = 1.0 - exp(-virtual_fragment.depth);
             var unoccluded = 1.0;
             var ahead = reader;
             var behind = fragment;
             while behind.real && unoccluded >= scene.opaque && alpha > 0.0 {
                 // Weighted by the fragment's own opacity, so that a hair's thinner share of a pixel takes less.
                 let own = opacity_of(behind) * unoccluded;
-                alpha -= own * exp(-scene.attenuation_per_m * (behind.z_m - stretch.from_m));
+                alpha -= own * exp(-scene.attenuation_per_m * (behind.z_m - virtual_fragment.from_m));
                 unoccluded -= own;
                 behind = next_fragment(&ahead);
             }
-            add_undercoat(&front, stretch, max(alpha, 0.0), stretch.from_m);
+            add_undercoat(&front, virtual_fragment, max(alpha, 0.0), virtual_fragment.from_m);
         } else {
-            var from_m = stretch.from_m;
-            while fragment.real && fragment.z_m < stretch.to_m && front.through >= scene.opaque {
+            var from_m = virtual_fragment.from_m;
+            while fragment.real && fragment.z_m < virtual_fragment.to_m && front.through >= scene.opaque {
                 let to_m = max(fragment.z_m, from_m);
-                add_part(&front, stretch, from_m, to_m);
+                add_part(&front, virtual_fragment, from_m, to_m);
                 add_hair(&front, fragment);
                 from_m = to_m;
                 fragment = next_fragment(&reader);
             }
-            if stretch.to_m > from_m || stretch.from_m == stretch.to_m {
-                add_part(&front, stretch, from_m, stretch.to_m);
+            if virtual_fragment.to_m > from_m || virtual_fragment.from_m == virtual_fragment.to_m {
+                add_part(&front, virtual_fragment, from_m, virtual_fragment.to_m);
             }
         }
-        index = stretch.next;
+        index = virtual_fragment.next;
     }
     while fragment.real && front.through >= scene.opaque {
         add_hair(&front, fragment);

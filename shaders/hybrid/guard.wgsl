@@ -1,4 +1,4 @@
-// Guard hair as camera-facing ribbons: one thread per piece of a strand, first to count the fragments of every pixel, then to
+// Guard hair as camera-facing ribbons: one thread per segment of a strand, first to count the fragments of every pixel, then to
 // fill the pixels' lists (docs/steps/strands.md).
 #import furrier::constants::{LEAST_SHARE, OVERFLOW}
 #import furrier::scene::{scene, triangles, vertices, strands, point_of}
@@ -8,9 +8,9 @@
 override FILL: bool = false;
 
 @group(3) @binding(0) var<storage, read_write> fragment_z: array<f32>;
-// First point of the piece.
+// First point of the segment.
 @group(3) @binding(1) var<storage, read_write> fragment_point: array<u32>;
-// Two half floats: coverage, and where along the piece.
+// Two half floats: coverage, and where along the segment.
 @group(3) @binding(2) var<storage, read_write> fragment_share: array<u32>;
 @group(3) @binding(3) var<storage, read_write> fragment_pixel: array<u32>;
 
@@ -37,9 +37,9 @@ fn ramp(v: f32, drift: f32) -> f32 {
     return 0.5 * (v + half) * (v + half) / drift;
 }
 
-// Whether a hair lies before the skin of a pixel's middle or, on the side that hair grows on, of its own place; seen from
+// Whether a hair lies before the skin of a pixel's middle or, on the side that hair grows on, of its own point; seen from
 // its bare side, skin hides what lies behind either.
-fn before_skin(at: u32, place: vec2<f32>, z_m: f32) -> bool {
+fn before_skin(at: u32, point: vec2<f32>, z_m: f32) -> bool {
     let before_middle = z_m < skin_z(at);
     let named = atomicLoad(&skin_triangle[at]);
     if named == 0u {
@@ -51,7 +51,7 @@ fn before_skin(at: u32, place: vec2<f32>, z_m: f32) -> bool {
         camera_from_world(vertices[c.y].position_m),
         camera_from_world(vertices[c.z].position_m),
     );
-    let before_own = z_m < plane_depth(shape, vec3((place - view.centre_px) / view.focal_px, 1.0));
+    let before_own = z_m < plane_depth(shape, vec3((point - view.centre_px) / view.focal_px, 1.0));
     return select(before_middle && before_own, before_middle || before_own, faces_eye(shape));
 }
 
@@ -92,25 +92,25 @@ fn guard(
     @builtin(local_invocation_index) local: u32,
 ) {
     let index = (group.y * groups.x + group.x) * 64u + local;
-    let pieces = scene.points_per_strand - 1u;
-    if index >= scene.strand_count * pieces {
+    let segments = scene.points_per_strand - 1u;
+    if index >= scene.strand_count * segments {
         return;
     }
-    let strand = index / pieces;
-    let piece = index % pieces;
-    let point = strand * scene.points_per_strand + piece;
-    let start = end_of_piece(point, piece);
-    let end = end_of_piece(point + 1u, piece + 1u);
+    let strand = index / segments;
+    let segment = index % segments;
+    let point = strand * scene.points_per_strand + segment;
+    let start = end_of_piece(point, segment);
+    let end = end_of_piece(point + 1u, segment + 1u);
     if min(start.z, end.z) < view.near_m || max(start.z, end.z) <= view.near_m {
         return;
     }
     let radius_m = strands[strand].root_radius_m;
     let start_px = start.xy * (view.focal_px / start.z) + view.centre_px;
     let end_px = end.xy * (view.focal_px / end.z) + view.centre_px;
-    let start_half = radius_m * radius_factor(f32(piece) / f32(pieces)) * view.focal_px / start.z;
-    let end_half = radius_m * radius_factor(f32(piece + 1u) / f32(pieces)) * view.focal_px / end.z;
+    let start_half = radius_m * radius_factor(f32(segment) / f32(segments)) * view.focal_px / start.z;
+    let end_half = radius_m * radius_factor(f32(segment + 1u) / f32(segments)) * view.focal_px / end.z;
 
-    // The ribbon is cut across its major axis: pieces that share an end and an axis neither overlap nor gap.
+    // The ribbon is cut across its major axis: segments that share an end and an axis neither overlap nor gap.
     let steep = abs(end_px.y - start_px.y) >= abs(end_px.x - start_px.x);
     let a = Knot(select(start_px.y, start_px.x, steep), select(start_px.x, start_px.y, steep), start_half, start.z);
     let b = Knot(select(end_px.y, end_px.x, steep), select(end_px.x, end_px.y, steep), end_half, end.z);
@@ -153,7 +153,7 @@ fn guard(
             atomicMax(&totals[OVERFLOW], 1u);
             return;
         }
-        let place = mix(start_px, end_px, linear);
+        let point = mix(start_px, end_px, linear);
         var before = ramp(f32(begin) - (centre - half), drift) - ramp(f32(begin) - (centre + half), drift);
         for (var x = begin; x < past; x++) {
             let after = ramp(f32(x + 1) - (centre - half), drift) - ramp(f32(x + 1) - (centre + half), drift);
@@ -167,7 +167,7 @@ fn guard(
             if z_m > opaque_m[at] {
                 continue;
             }
-            let inside = clamp(place, vec2<f32>(pixel), vec2<f32>(pixel + 1));
+            let inside = clamp(point, vec2<f32>(pixel), vec2<f32>(pixel + 1));
             if before_skin(at, inside, z_m) {
                 put(at, z_m, point, min(coverage, 1.0), along);
             }

@@ -1,13 +1,13 @@
-// Rays through the undercoat, one thread per pixel, and the stretches they find.
-#import furrier::constants::{MOST_STEPS, MOST_STEP_GROWTH, MOST_STEP_LENGTHENING, OVERFLOW, STEPS, STRETCHES}
+// Rays through the undercoat, one thread per pixel, and the virtual fragments they find.
+#import furrier::constants::{MOST_STEPS, MOST_STEP_GROWTH, MOST_STEP_LENGTHENING, OVERFLOW, STEPS, VIRTUAL_FRAGMENTS}
 #import furrier::scene::scene
-#import furrier::prism::{Place, barycentric}
+#import furrier::prism::{ShellPoint, barycentric}
 #import furrier::camera::{view, totals, pixel_count, pixel_of, direction_through, ray_through, meet, skin_z, spans, cursors,
     opaque_m, heads, NO_SKIN}
 #import furrier::faces::{faces, place_on, face_shape}
 #import furrier::march::{advance, walk_from, Stepping}
-#import furrier::stretch::{NO_STRETCH, Stretch, pack_faces}
-#import furrier::undercoat_look::undercoat_look
+#import furrier::virtual_fragment::{NO_VIRTUAL_FRAGMENT, VirtualFragment, pack_faces}
+#import furrier::undercoat_light::undercoat_light
 
 // Some drivers end loops that run longer.
 const MOST_ROUNDS: u32 = 60000u;
@@ -21,7 +21,7 @@ struct Inside {
 @group(3) @binding(1) var<storage, read_write> starts: array<vec2<u32>>;
 // Prisms that hold the eye.
 @group(3) @binding(2) var<storage, read> inside: array<Inside>;
-@group(3) @binding(3) var<storage, read_write> stretches: array<Stretch>;
+@group(3) @binding(3) var<storage, read_write> virtual_fragments: array<VirtualFragment>;
 
 // A start: distance along the ray, its rank among equals, and where it is found.
 struct Entry {
@@ -44,16 +44,16 @@ fn entry(index: u32, begin: u32, count: u32) -> Entry {
 }
 
 // Where an entry lies in its prism.
-fn place_of(entry: Entry, begin: u32, count: u32, ray: vec3<f32>) -> Place {
+fn place_of(entry: Entry, begin: u32, count: u32, ray: vec3<f32>) -> ShellPoint {
     if entry.index >= count {
         let around = inside[entry.index - count];
-        return Place(around.b, around.t);
+        return ShellPoint(around.b, around.t);
     }
     let face = starts[begin + entry.index].y;
     return place_on(face, meet(face_shape(face), ray).barycentric);
 }
 
-// Steps of a march on their way to become one stretch.
+// Steps of a march on their way to become one virtual_fragment.
 struct Gathered {
     radiance: vec3<f32>,
     albedo: vec3<f32>,
@@ -64,42 +64,42 @@ struct Gathered {
     weight: f32,
 }
 
-// A pixel's list as it grows: its first and its last stretch.
+// A pixel's list as it grows: its first and its last virtual_fragment.
 struct Chain {
     head: u32,
     tail: u32,
 }
 
-// Puts a stretch where its depth belongs, after those that begin where it does.
+// Puts a virtual fragment where its depth belongs, after those that begin where it does.
 fn put(chain: ptr<function, Chain>, group: Gathered, z_per_m: f32) {
     let scale = 1.0 / group.weight;
     if !(group.depth > 0.0 && group.weight > 1e-37) {
         return;
     }
-    let slot = atomicAdd(&totals[STRETCHES], 1u);
-    if slot >= view.most_stretches {
+    let slot = atomicAdd(&totals[VIRTUAL_FRAGMENTS], 1u);
+    if slot >= view.most_virtual_fragments {
         atomicMax(&totals[OVERFLOW], 1u);
         return;
     }
     let from_m = group.from_m * z_per_m;
     var previous = (*chain).tail;
-    var next = NO_STRETCH;
-    if previous != NO_STRETCH && stretches[previous].from_m > from_m {
-        previous = NO_STRETCH;
+    var next = NO_VIRTUAL_FRAGMENT;
+    if previous != NO_VIRTUAL_FRAGMENT && virtual_fragments[previous].from_m > from_m {
+        previous = NO_VIRTUAL_FRAGMENT;
         next = (*chain).head;
-        while next != NO_STRETCH && stretches[next].from_m <= from_m {
+        while next != NO_VIRTUAL_FRAGMENT && virtual_fragments[next].from_m <= from_m {
             previous = next;
-            next = stretches[next].next;
+            next = virtual_fragments[next].next;
         }
     }
     let faces_packed = pack_faces(group.albedo * scale, group.tangent * scale);
-    stretches[slot] = Stretch(group.radiance * scale, from_m, group.to_m * z_per_m, group.depth, faces_packed, next);
-    if previous == NO_STRETCH {
+    virtual_fragments[slot] = VirtualFragment(group.radiance * scale, from_m, group.to_m * z_per_m, group.depth, faces_packed, next);
+    if previous == NO_VIRTUAL_FRAGMENT {
         (*chain).head = slot;
     } else {
-        stretches[previous].next = slot;
+        virtual_fragments[previous].next = slot;
     }
-    if next == NO_STRETCH {
+    if next == NO_VIRTUAL_FRAGMENT {
         (*chain).tail = slot;
     }
 }
@@ -117,7 +117,7 @@ fn march_pixel(at: u32) -> u32 {
     let count = min(atomicLoad(&cursors[at]), spans[at].end) - begin;
     let all = count + scene.inside_count;
 
-    var chain = Chain(NO_STRETCH, NO_STRETCH);
+    var chain = Chain(NO_VIRTUAL_FRAGMENT, NO_VIRTUAL_FRAGMENT);
     var opaque_here_m = NO_SKIN;
     var steps = 0u;
     var last = Entry(-1.0, 0u, 0u);
@@ -152,7 +152,7 @@ fn march_pixel(at: u32) -> u32 {
             steps++;
             let left = through * exp(-taken.depth);
             let weight = through - left;
-            let look = undercoat_look(taken, view.eye_m, direction);
+            let appearance = undercoat_light(taken, view.eye_m, direction);
             if group.depth == 0.0 {
                 group.from_m = taken.from_m;
             }
@@ -160,8 +160,8 @@ fn march_pixel(at: u32) -> u32 {
             group.to_m = end_m;
             group.depth += taken.depth;
             group.weight += weight;
-            group.radiance += weight * look.radiance;
-            group.albedo += weight * look.albedo;
+            group.radiance += weight * appearance.radiance;
+            group.albedo += weight * appearance.albedo;
             group.tangent += weight * taken.hair;
             // A new virtual fragment at equal parts of what the march hides in the end.
             if floor((1.0 - left) * scene.groups) > floor((1.0 - through) * scene.groups) {

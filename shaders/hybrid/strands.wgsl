@@ -1,17 +1,17 @@
 // Light on guard hair, one thread per strand, as src/hybrid/guard_light.rs.
-#import furrier::constants::{AT_BORDER, LOOKS, NOTHING}
+#import furrier::constants::{AT_BORDER, LIT_POINTS, NOTHING}
 #import furrier::scene::{scene, triangles, Strand, strands, lights, point_of, normal_at, lean_at, density_at, length_at, unit_or}
 #import furrier::light::light_at
 #import furrier::camera::view
 #import furrier::guard::{guard_ramp, root_of}
 #import furrier::fur_light::{angles_of, cos_of, guard_lobes, shadow_power, slant_depth, sky_depth, terminator, above_both}
 #import furrier::mean_shadow::{mean_depths, tips_m}
-#import furrier::undercoat_look::key_depth
+#import furrier::undercoat_light::key_depth
 
-// Logarithms of radiance, LOOKS of each strand, three numbers each.
-@group(3) @binding(0) var<storage, read_write> looks: array<f32>;
+// Logarithms of radiance, LIT_POINTS of each strand, three numbers each.
+@group(3) @binding(0) var<storage, read_write> log_radiance: array<f32>;
 
-// Mean of the two pieces that meet in point `i` of a strand, twice their length.
+// Mean of the two segments that meet in point `i` of a strand, twice their length.
 fn step_at(first: u32, i: u32) -> vec3<f32> {
     let last = scene.points_per_strand - 1u;
     let step = point_of(first + min(i + 1u, last)) - point_of(first + max(i, 1u) - 1u);
@@ -22,26 +22,26 @@ fn step_at(first: u32, i: u32) -> vec3<f32> {
 // beside an open border, where clumps are seen from their sides, with its clumps.
 fn depth_of(triangle: u32, b: vec3<f32>, height_m: f32, length: f32) -> f32 {
     let t = height_m / max(scene.undercoat_kind.top_m * length, 1e-30);
-    let place = triangles[triangle];
-    if (place.traits & AT_BORDER) != 0u && place.shadow_at != NOTHING && t <= 1.0 {
+    let point = triangles[triangle];
+    if (point.traits & AT_BORDER) != 0u && point.shadow_at != NOTHING && t <= 1.0 {
         return key_depth(triangle, b, max(t, 0.0));
     }
     let depths = mean_depths(triangle, b, height_m / max(tips_m() * length, 1e-30));
     return depths.x + depths.y;
 }
 
-// Logarithm of what a strand sends to the eye at its look `i`.
-fn log_look(strand: Strand, first: u32, i: u32) -> vec3<f32> {
-    let s = sqrt(f32(i) / f32(LOOKS - 1u));
+// Logarithm of what a strand sends to the eye at its lit point `i`.
+fn log_radiance_at(strand: Strand, first: u32, i: u32) -> vec3<f32> {
+    let s = sqrt(f32(i) / f32(LIT_POINTS - 1u));
     let at = s * f32(scene.points_per_strand - 1u);
-    let piece = min(u32(at), scene.points_per_strand - 2u);
-    let share = at - f32(piece);
+    let segment = min(u32(at), scene.points_per_strand - 2u);
+    let share = at - f32(segment);
     let b = root_of(strand);
     let normal = normal_at(strand.triangle, b);
     let lean = lean_at(strand.triangle, b, normal);
-    let point_m = mix(point_of(first + piece), point_of(first + piece + 1u), share);
+    let point_m = mix(point_of(first + segment), point_of(first + segment + 1u), share);
     // The hair's direction turns evenly from point to point.
-    let along = unit_or(mix(step_at(first, piece), step_at(first, piece + 1u), share), lean);
+    let along = unit_or(mix(step_at(first, segment), step_at(first, segment + 1u), share), lean);
     // Height along the lean, so that a leaning coat's layers are as thick as its hairs are long.
     let height_m = dot(point_m - point_of(first), normal) / max(dot(lean, normal), 0.05);
     let length = length_at(strand.triangle, b);
@@ -71,10 +71,10 @@ fn log_look(strand: Strand, first: u32, i: u32) -> vec3<f32> {
     return log(max(sum, vec3(1.1754944e-38)));
 }
 
-fn put(index: u32, look: vec3<f32>) {
-    looks[3u * index] = look.x;
-    looks[3u * index + 1u] = look.y;
-    looks[3u * index + 2u] = look.z;
+fn put(index: u32, log_rgb: vec3<f32>) {
+    log_radiance[3u * index] = log_rgb.x;
+    log_radiance[3u * index + 1u] = log_rgb.y;
+    log_radiance[3u * index + 2u] = log_rgb.z;
 }
 
 @compute @workgroup_size(64)
@@ -89,7 +89,7 @@ fn shade(
     }
     let strand = strands[index];
     let first = index * scene.points_per_strand;
-    for (var i = 0u; i < LOOKS; i++) {
-        put(index * LOOKS + i, log_look(strand, first, i));
+    for (var i = 0u; i < LIT_POINTS; i++) {
+        put(index * LIT_POINTS + i, log_radiance_at(strand, first, i));
     }
 }

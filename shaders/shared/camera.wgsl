@@ -12,7 +12,7 @@ struct View {
     right: vec3<f32>,
     near_m: f32,
     up: vec3<f32>,
-    // Items that the lists hold at most: fragments, starts, stretches.
+    // Items that the lists hold at most: fragments, starts, virtual fragments.
     most_fragments: u32,
     forward: vec3<f32>,
     most_starts: u32,
@@ -21,7 +21,7 @@ struct View {
     size: vec2<u32>,
     // First row of the band and the one past its last.
     rows: vec2<u32>,
-    most_stretches: u32,
+    most_virtual_fragments: u32,
     padding: u32,
 }
 
@@ -32,7 +32,7 @@ struct Span {
 }
 
 @group(2) @binding(0) var<uniform> view: View;
-// What a band came to, read back by the host, at STARTS, FRAGMENTS, STRETCHES, STEPS and OVERFLOW. The last is not 0 where a list
+// What a band came to, read back by the host, at STARTS, FRAGMENTS, VIRTUAL_FRAGMENTS, STEPS and OVERFLOW. The last is not 0 where a list
 // was too short, so that the band must be drawn again.
 @group(2) @binding(1) var<storage, read_write> totals: array<atomic<u32>>;
 // Of every pixel of the band: ~bits of the skin's depth and ~triangle, 0 where there is no skin.
@@ -40,10 +40,10 @@ struct Span {
 @group(2) @binding(3) var<storage, read_write> skin_triangle: array<atomic<u32>>;
 // Depth from which undercoat hides everything, m.
 @group(2) @binding(4) var<storage, read_write> opaque_m: array<f32>;
-// First stretch of undercoat.
+// First virtual fragment of undercoat.
 @group(2) @binding(5) var<storage, read_write> heads: array<u32>;
 @group(2) @binding(6) var<storage, read_write> spans: array<Span>;
-// While items are counted their number; while they are filled in the next one's place.
+// While items are counted their number; while they are filled in the next one's point.
 @group(2) @binding(7) var<storage, read_write> cursors: array<atomic<u32>>;
 
 fn camera_from_world(point_m: vec3<f32>) -> vec3<f32> {

@@ -2,19 +2,19 @@
 #define_import_path furrier::faces
 
 #import furrier::scene::prism_of
-#import furrier::prism::{Place, jacobian, to_side_m}
+#import furrier::prism::{ShellPoint, jacobian, to_side_m}
 #import furrier::camera::{Flat, flat_of, camera_from_world}
 
 // Triangle · 16 + kind · 2 + whether the prism is inside out there. Kind: 0 for the top, 1 + 2·corner for one half of the wall
 // over the edge opposite to that corner, the next for its other half.
 @group(3) @binding(0) var<storage, read> faces: array<u32>;
 
-fn on_corner(corner: u32, t: f32) -> Place {
-    return Place(vec2(f32(corner == 1u), f32(corner == 2u)), t);
+fn on_corner(corner: u32, t: f32) -> ShellPoint {
+    return ShellPoint(vec2(f32(corner == 1u), f32(corner == 2u)), t);
 }
 
 // Corner `number` of a face, in its prism.
-fn face_place(face: u32, number: u32) -> Place {
+fn face_point(face: u32, number: u32) -> ShellPoint {
     let turned = (faces[face] & 1u) == 1u;
     let which = select(number, (3u - number) % 3u, turned);
     let kind = (faces[face] >> 1u) & 7u;
@@ -35,7 +35,7 @@ fn face_place(face: u32, number: u32) -> Place {
 }
 
 fn face_corner(face: u32, which: u32) -> vec3<f32> {
-    return jacobian(prism_of(faces[face] >> 4u), face_place(face, which)).at_m;
+    return jacobian(prism_of(faces[face] >> 4u), face_point(face, which)).at_m;
 }
 
 fn face_shape(face: u32) -> Flat {
@@ -47,11 +47,11 @@ fn face_shape(face: u32) -> Flat {
 }
 
 // Where in its prism a point of a face lies.
-fn place_on(face: u32, barycentric: vec3<f32>) -> Place {
-    let a = face_place(face, 0u);
-    let b = face_place(face, 1u);
-    let c = face_place(face, 2u);
-    return Place(mat3x2(a.b, b.b, c.b) * barycentric, dot(vec3(a.t, b.t, c.t), barycentric));
+fn place_on(face: u32, barycentric: vec3<f32>) -> ShellPoint {
+    let a = face_point(face, 0u);
+    let b = face_point(face, 1u);
+    let c = face_point(face, 2u);
+    return ShellPoint(mat3x2(a.b, b.b, c.b) * barycentric, dot(vec3(a.t, b.t, c.t), barycentric));
 }
 
 // How far from the eye a march starts whose ray meets a face `at_m` from it: on the side of the prism that a wall's flat halves
@@ -62,6 +62,6 @@ fn start_m(face: u32, barycentric: vec3<f32>, at_m: f32, eye_m: vec3<f32>, direc
         return at_m;
     }
     let prism = prism_of(faces[face] >> 4u);
-    let place = place_on(face, barycentric);
-    return max(at_m + to_side_m(prism, (kind - 1u) / 2u, eye_m + direction * at_m, direction, place), 0.0);
+    let point = place_on(face, barycentric);
+    return max(at_m + to_side_m(prism, (kind - 1u) / 2u, eye_m + direction * at_m, direction, point), 0.0);
 }

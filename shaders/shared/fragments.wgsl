@@ -5,14 +5,14 @@
 #import furrier::camera::{spans, cursors}
 
 @group(3) @binding(0) var<storage, read> fragment_z: array<f32>;
-// First point of the piece.
+// First point of the segment.
 @group(3) @binding(1) var<storage, read> fragment_point: array<u32>;
-// Two half floats: coverage, and where along the piece.
+// Two half floats: coverage, and where along the segment.
 @group(3) @binding(2) var<storage, read> fragment_share: array<u32>;
 // Places in the lists above.
 @group(3) @binding(3) var<storage, read> fragment_order: array<u32>;
 
-// A fragment, pieces of one hair that follow each other joined.
+// A fragment, segments of one hair that follow each other joined.
 struct Fragment {
     // Whether there was one more.
     real: bool,
@@ -36,7 +36,7 @@ fn read_from(at: u32) -> Reader {
     return Reader(spans[at].begin, min(atomicLoad(&cursors[at]), spans[at].end));
 }
 
-// The next fragment; neighbouring pieces of one hair cover it once.
+// The next fragment; neighbouring segments of one hair cover it once.
 fn next_fragment(reader: ptr<function, Reader>) -> Fragment {
     if (*reader).next >= (*reader).end {
         return Fragment(false, 0.0, 0u, 0.0, 0.0);

@@ -26,7 +26,7 @@ fn radius_factor(s: f32) -> f32 {
     return 1.0 + (scene.taper - 1.0) * s;
 }
 
-// How far along its hair a place `along` the piece from `point` on lies, in [0, 1].
+// How far along its hair a place `along` the segment from `point` on lies, in [0, 1].
 fn along_hair(point: u32, along: f32) -> f32 {
     return (f32(point % scene.points_per_strand) + along) / f32(scene.points_per_strand - 1u);
 }

@@ -3,7 +3,7 @@
 
 #import furrier::constants::{NOTHING, ON_SIDE, PI}
 #import furrier::scene::{scene, triangles, prism_of, density_at, length_at, table_at}
-#import furrier::prism::{Prism, Place, Jacobian, jacobian, rates_along, moved, inside_of, barycentric, subelement, subelement_centre}
+#import furrier::prism::{Prism, ShellPoint, Jacobian, jacobian, rates_along, moved, inside_of, barycentric, subelement, subelement_centre}
 #import furrier::undercoat::{column_over, column_crowding, code_value, decode_value, mean_sine}
 
 // Side numbers after those of the edges opposite to corners 0, 1 and 2.
@@ -16,7 +16,7 @@ const OUT: u32 = 3u;
 struct Walk {
     at_m: f32,
     triangle: u32,
-    place: Place,
+    point: ShellPoint,
     // Length per optical depth, by the last step, m.
     per_depth_m: f32,
     // How far the last change of prism took the march along, m.
@@ -32,7 +32,7 @@ struct Step {
     from_m: f32,
     length_m: f32,
     triangle: u32,
-    place: Place,
+    point: ShellPoint,
     hair: vec3<f32>,
     depth: f32,
 }
@@ -43,11 +43,11 @@ struct Stepping {
     layers: f32,
 }
 
-fn walk_from(at_m: f32, triangle: u32, place: Place) -> Walk {
-    return Walk(at_m, triangle, place, 1e30, 0.0, 0.0, true, prism_of(triangle));
+fn walk_from(at_m: f32, triangle: u32, point: ShellPoint) -> Walk {
+    return Walk(at_m, triangle, point, 1e30, 0.0, 0.0, true, prism_of(triangle));
 }
 
-// Density over its mean in the sub-element that holds a place. Prisms that are not stored are asked directly: the same
+// Density over its mean in the sub-element that holds a point. Prisms that are not stored are asked directly: the same
 // value, slower.
 fn crowding(triangle: u32, b: vec3<f32>, t: f32) -> f32 {
     let d = triangles[triangle].density_splits;
@@ -69,7 +69,7 @@ fn reach_at(t: f32) -> f32 {
 
 // The step of `length_m` from where a march stands. Extinction is ρ⊥ D |sin∠|; ends of hairs add (π/4) D² |cos∠| each.
 fn step_of(walk: Walk, j: Jacobian, rates: vec3<f32>, length_m: f32, direction: vec3<f32>) -> Step {
-    let middle = inside_of(moved(walk.place, rates, 0.5 * length_m));
+    let middle = inside_of(moved(walk.point, rates, 0.5 * length_m));
     let b = barycentric(middle);
     let up_m = length(j.up_m);
     let hair = j.up_m / up_m;
@@ -77,7 +77,7 @@ fn step_of(walk: Walk, j: Jacobian, rates: vec3<f32>, length_m: f32, direction: 
     let per_volume = 2.0 * per_square_m * triangles[walk.triangle].rest_area / abs(j.determinant);
     let sine = mean_sine(length(cross(hair, direction)));
     let length_per_volume = per_volume * up_m * scene.stretch * table_at(0u, middle.t);
-    let ends = abs(reach_at(walk.place.t) - reach_at(walk.place.t + rates.z * length_m));
+    let ends = abs(reach_at(walk.point.t) - reach_at(walk.point.t + rates.z * length_m));
     var end_depth = 0.0;
     if rates.z != 0.0 && ends > 0.0 {
         end_depth = per_volume * ends / abs(rates.z) * 0.25 * PI * scene.diameter_m * scene.diameter_m
@@ -101,32 +101,32 @@ fn offer(side: Side, which: u32, left: f32, rate: f32) -> Side {
     return side;
 }
 
-fn next_side(place: Place, rates: vec3<f32>) -> Side {
+fn next_side(point: ShellPoint, rates: vec3<f32>) -> Side {
     var side = Side(OUT, 1e30);
-    side = offer(side, 0u, 1.0 - place.b.x - place.b.y, -rates.x - rates.y);
-    side = offer(side, 1u, place.b.x, rates.x);
-    side = offer(side, 2u, place.b.y, rates.y);
-    side = offer(side, OUT, 1.0 - place.t, -rates.z);
-    return offer(side, OUT, place.t, rates.z);
+    side = offer(side, 0u, 1.0 - point.b.x - point.b.y, -rates.x - rates.y);
+    side = offer(side, 1u, point.b.x, rates.x);
+    side = offer(side, 2u, point.b.y, rates.y);
+    side = offer(side, OUT, 1.0 - point.t, -rates.z);
+    return offer(side, OUT, point.t, rates.z);
 }
 
-// A place on the edge opposite to `corner`, in the neighbour whose `opposite` corner lies beyond it.
-fn across_edge(place: Place, corner: u32, opposite: u32) -> Place {
-    let b = barycentric(place);
+// A point on the edge opposite to `corner`, in the neighbour whose `opposite` corner lies beyond it.
+fn across_edge(point: ShellPoint, corner: u32, opposite: u32) -> ShellPoint {
+    let b = barycentric(point);
     var beyond = vec3(0.0);
     beyond[(opposite + 1u) % 3u] = b[(corner + 2u) % 3u];
     beyond[(opposite + 2u) % 3u] = b[(corner + 1u) % 3u];
     let sum = beyond.x + beyond.y + beyond.z;
     let scale = select(0.0, 1.0 / sum, sum > 0.0);
-    return Place(beyond.yz * scale, place.t);
+    return ShellPoint(beyond.yz * scale, point.t);
 }
 
 // One step on. Coordinates are carried along by their gradients and put right by one Newton step; a step ends on the side it
 // would pass, and the march goes on in the neighbour there.
 fn advance(walk: ptr<function, Walk>, origin_m: vec3<f32>, direction: vec3<f32>, far_m: f32, stepping: Stepping) -> Step {
-    let j = jacobian((*walk).prism, (*walk).place);
+    let j = jacobian((*walk).prism, (*walk).point);
     let rates = rates_along(j, direction);
-    var taken = Step((*walk).at_m, 0.0, (*walk).triangle, (*walk).place, vec3(0.0), 0.0);
+    var taken = Step((*walk).at_m, 0.0, (*walk).triangle, (*walk).point, vec3(0.0), 0.0);
     let largest = max(max(abs(rates.x), abs(rates.y)), abs(rates.z));
     let sign = select(1.0, -1.0, j.determinant < 0.0);
     if !(largest > 0.0 && largest < 1e37) || (*walk).sign * sign < 0.0 {
@@ -135,10 +135,10 @@ fn advance(walk: ptr<function, Walk>, origin_m: vec3<f32>, direction: vec3<f32>,
     }
     (*walk).sign = sign;
     // Put right what the last step's straight line left over.
-    (*walk).place = moved((*walk).place, rates_along(j, origin_m + direction * (*walk).at_m - j.at_m), 1.0);
+    (*walk).point = moved((*walk).point, rates_along(j, origin_m + direction * (*walk).at_m - j.at_m), 1.0);
     let thickness_m = length(j.up_m) / f32(scene.layers);
     let least_m = 1e-3 * thickness_m;
-    let side = next_side((*walk).place, rates);
+    let side = next_side((*walk).point, rates);
     let longest_m = max(min(stepping.layers * thickness_m, (*walk).per_depth_m * stepping.depth), least_m);
     var length_m = min(min(longest_m, max(side.after_m, 0.0)), far_m - (*walk).at_m);
     if length_m > 0.0 {
@@ -149,7 +149,7 @@ fn advance(walk: ptr<function, Walk>, origin_m: vec3<f32>, direction: vec3<f32>,
         }
         (*walk).per_depth_m = length_m / max(taken.depth, 1e-9);
         (*walk).at_m += length_m;
-        (*walk).place = moved((*walk).place, rates, length_m);
+        (*walk).point = moved((*walk).point, rates, length_m);
     }
     if (*walk).at_m >= far_m {
         (*walk).alive = false;
@@ -167,7 +167,7 @@ fn advance(walk: ptr<function, Walk>, origin_m: vec3<f32>, direction: vec3<f32>,
         (*walk).alive = false;
         return taken;
     }
-    (*walk).place = across_edge((*walk).place, side.which, beyond & 3u);
+    (*walk).point = across_edge((*walk).point, side.which, beyond & 3u);
     (*walk).triangle = beyond >> 2u;
     (*walk).prism = prism_of(beyond >> 2u);
     // The next prism is entered a hair's breadth inside, so that rounding does not send the march back; ever deeper where

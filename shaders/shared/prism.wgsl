@@ -9,17 +9,17 @@ struct Prism {
 }
 
 // x = Σ bᵢ (pᵢ + t oᵢ).
-struct Place {
+struct ShellPoint {
     // Barycentric coordinates of corners 1 and 2.
     b: vec2<f32>,
     // Height, 0 on the skin to 1 at the top.
     t: f32,
 }
 
-// The nearest place inside: a march that rounding or a folded prism has led astray must not read beyond the corners.
-fn inside_of(place: Place) -> Place {
-    let b = max(barycentric(place), vec3(0.0));
-    return Place(b.yz / (b.x + b.y + b.z), clamp(place.t, 0.0, 1.0));
+// The nearest point inside: a march that rounding or a folded prism has led astray must not read beyond the corners.
+fn inside_of(point: ShellPoint) -> ShellPoint {
+    let b = max(barycentric(point), vec3(0.0));
+    return ShellPoint(b.yz / (b.x + b.y + b.z), clamp(point.t, 0.0, 1.0));
 }
 
 struct Jacobian {
@@ -32,26 +32,26 @@ struct Jacobian {
     gradient_t: vec3<f32>,
 }
 
-fn barycentric(place: Place) -> vec3<f32> {
-    return vec3(1.0 - place.b.x - place.b.y, place.b.x, place.b.y);
+fn barycentric(point: ShellPoint) -> vec3<f32> {
+    return vec3(1.0 - point.b.x - point.b.y, point.b.x, point.b.y);
 }
 
-fn moved(place: Place, rates: vec3<f32>, by: f32) -> Place {
-    return Place(place.b + rates.xy * by, place.t + rates.z * by);
+fn moved(point: ShellPoint, rates: vec3<f32>, by: f32) -> ShellPoint {
+    return ShellPoint(point.b + rates.xy * by, point.t + rates.z * by);
 }
 
-fn jacobian(prism: Prism, place: Place) -> Jacobian {
-    let origin = prism.foot_m[0] + prism.offset_m[0] * place.t;
-    let side_b = prism.foot_m[1] + prism.offset_m[1] * place.t - origin;
-    let side_c = prism.foot_m[2] + prism.offset_m[2] * place.t - origin;
-    let b = barycentric(place);
+fn jacobian(prism: Prism, point: ShellPoint) -> Jacobian {
+    let origin = prism.foot_m[0] + prism.offset_m[0] * point.t;
+    let side_b = prism.foot_m[1] + prism.offset_m[1] * point.t - origin;
+    let side_c = prism.foot_m[2] + prism.offset_m[2] * point.t - origin;
+    let b = barycentric(point);
     let up_m = prism.offset_m[0] * b.x + prism.offset_m[1] * b.y + prism.offset_m[2] * b.z;
     let across = cross(side_c, up_m);
     let determinant = dot(side_b, across);
     // A flat prism has no volume: rates of zero keep a march from leaving for infinity.
     let inverse = select(0.0, 1.0 / determinant, abs(determinant) > 1.1754944e-38);
     return Jacobian(
-        origin + side_b * place.b.x + side_c * place.b.y,
+        origin + side_b * point.b.x + side_c * point.b.y,
         up_m,
         determinant,
         across * inverse,
@@ -64,18 +64,18 @@ fn rates_along(j: Jacobian, along: vec3<f32>) -> vec3<f32> {
     return vec3(dot(j.gradient_b, along), dot(j.gradient_c, along), dot(j.gradient_t, along));
 }
 
-// How far along a unit direction from a point, whose place is about `guess`, the side opposite to `corner` lies, m; nothing where
+// How far along a unit direction from a point, whose point is about `guess`, the side opposite to `corner` lies, m; nothing where
 // it is farther than half as far as the prism is high.
-fn to_side_m(prism: Prism, corner: u32, point_m: vec3<f32>, direction: vec3<f32>, guess: Place) -> f32 {
-    var place = guess;
+fn to_side_m(prism: Prism, corner: u32, point_m: vec3<f32>, direction: vec3<f32>, guess: ShellPoint) -> f32 {
+    var point = guess;
     var along_m = 0.0;
     var up_m = 0.0;
     for (var i = 0u; i < 3u; i++) {
-        let j = jacobian(prism, place);
-        place = moved(place, rates_along(j, point_m + direction * along_m - j.at_m), 1.0);
+        let j = jacobian(prism, point);
+        point = moved(point, rates_along(j, point_m + direction * along_m - j.at_m), 1.0);
         let rates = rates_along(j, direction);
-        let by_m = -barycentric(place)[corner] / vec3(-rates.x - rates.y, rates.xy)[corner];
-        place = moved(place, rates, by_m);
+        let by_m = -barycentric(point)[corner] / vec3(-rates.x - rates.y, rates.xy)[corner];
+        point = moved(point, rates, by_m);
         along_m += by_m;
         up_m = length(j.up_m);
     }
@@ -148,7 +148,7 @@ fn around_corners(b: vec3<f32>, d: u32) -> Around {
 }
 
 // Barycentric coordinates of a corner.
-fn corner_place(index: u32, d: u32) -> vec3<f32> {
+fn corner_point(index: u32, d: u32) -> vec3<f32> {
     let n = 1u << d;
     let side = f32(2u * n + 3u);
     var j = u32(max(0.5 * (side - sqrt(max(side * side - 8.0 * f32(index), 0.0))), 0.0));

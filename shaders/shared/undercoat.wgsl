@@ -45,7 +45,7 @@ fn clump_wall(root_m: vec3<f32>, normal: vec3<f32>) -> f32 {
     return wall;
 }
 
-// What crowds the hair over a place of a triangle, at all heights (Andersen et al. 2016 §3.2).
+// What crowds the hair over a point of a triangle, at all heights (Andersen et al. 2016 §3.2).
 fn column_over(triangle: u32, b: vec3<f32>) -> Column {
     let c = triangles[triangle].corners;
     let root_m = vertices[c.x].rest_m * b.x + vertices[c.y].rest_m * b.y + vertices[c.z].rest_m * b.z;

@@ -63,7 +63,7 @@ impl Component {
 
 /// Where an accessor's elements lie; every element is within the buffer.
 #[derive(Clone, Debug)]
-pub struct Layout {
+pub struct AccessorLayout {
     /// Elements.
     pub count: usize,
     /// Components of an element.
@@ -85,7 +85,7 @@ struct Sparse {
     values: usize,
 }
 
-impl Layout {
+impl AccessorLayout {
     /// The checked layout of accessor `index`.
     ///
     /// # Errors
@@ -261,8 +261,8 @@ impl Document {
         Err(at.fault("5121, 5123 or 5125, because it holds indices"))
     }
 
-    fn layout(&self, index: usize, components: usize) -> Result<Layout> {
-        let layout = Layout::of(self, index)?;
+    fn layout(&self, index: usize, components: usize) -> Result<AccessorLayout> {
+        let layout = AccessorLayout::of(self, index)?;
         if layout.components == components {
             return Ok(layout);
         }

@@ -177,7 +177,7 @@ fn sample(
 ) -> Result<Option<Vec<f64>>> {
     let times = document.floats(sampler.need("input")?.size()?, 1)?;
     let output_at = sampler.need("output")?;
-    let layout = super::accessor::Layout::of(document, output_at.size()?)?;
+    let layout = super::accessor::AccessorLayout::of(document, output_at.size()?)?;
     let values = layout.floats(document);
     let method = sampler.get("interpolation");
     let method = method.as_ref().map_or(Ok("LINEAR"), At::text)?;

@@ -60,7 +60,7 @@ impl Primitive {
             self.uv_sets.push(read(&at, 2)?.chunks_exact(2).map(Vec2::from_slice).collect());
         }
         if let Some(at) = attributes.get("COLOR_0") {
-            let width = if super::accessor::Layout::of(document, at.size()?)?.components == 3 { 3 } else { 4 };
+            let width = if super::accessor::AccessorLayout::of(document, at.size()?)?.components == 3 { 3 } else { 4 };
             let colour = |c: &[f32]| Vec4::new(c[0], c[1], c[2], c.get(3).copied().unwrap_or(1.0));
             self.colour = Some(read(&at, width)?.chunks_exact(width).map(colour).collect());
         }

@@ -1,7 +1,7 @@
 //! Checks a whole document once: every reference points at something, every accessor lies in its buffer, the nodes
 //! form trees. What is written back with a coat must at least be sound itself.
 
-use super::accessor::Layout;
+use super::accessor::AccessorLayout;
 use super::document::Document;
 use super::json::At;
 use crate::error::{Error, Result};
@@ -42,7 +42,7 @@ pub fn document(document: &Document) -> Result<()> {
     let check = Check { document };
     check.reference(&root, "scene", "scenes")?;
     for index in 0..document.count("accessors") {
-        Layout::of(document, index)?;
+        AccessorLayout::of(document, index)?;
     }
     for scene in root.list("scenes")? {
         check.references(&scene, "nodes", "nodes")?;
@@ -99,7 +99,7 @@ impl Check<'_> {
         let mut vertices = None;
         for (name, at) in lists.iter().map(At::members).collect::<Result<Vec<_>>>()?.into_iter().flatten() {
             let index = at.index_into("accessors", self.document.count("accessors"))?;
-            let count = Layout::of(self.document, index)?.count;
+            let count = AccessorLayout::of(self.document, index)?.count;
             let expected = *vertices.get_or_insert(count);
             if count != expected {
                 return Err(Error::input("the attributes of a primitive differ in length")

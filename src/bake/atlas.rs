@@ -1,6 +1,6 @@
 //! An atlas: hair grown on the parts themselves, charts of all of them in one square.
 
-use super::{Dressed, Laid, Steps, Task, recipe, skin};
+use super::{CoatedParts, Laid, Steps, Task, recipe, skin};
 use crate::coat::atlas::{self, judge};
 use crate::coat::measures::Measures;
 use crate::error::{Error, Result};
@@ -16,7 +16,7 @@ const TEXELS: (u32, u32) = (4, 2048);
 const PLACES: usize = 8;
 
 /// Bakes the atlas of the task's parts and puts it on them.
-pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>) -> Result<Dressed> {
+pub(super) fn coat_parts(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>) -> Result<CoatedParts> {
     if let Some(region) = task.preset.regions.first() {
         return Err(Error::usage("an atlas cannot have regions")
             .with_field("regions")
@@ -40,8 +40,8 @@ pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>)
         patches.push(charts);
     }
     let square = steps.run("patches", || fit_atlas(&mut patches, tile_m, texels, PADDING))?;
-    let skins: Vec<atlas::Skin<'_>> = (0..groomed.len())
-        .map(|i| atlas::Skin {
+    let skins: Vec<atlas::AtlasSkin<'_>> = (0..groomed.len())
+        .map(|i| atlas::AtlasSkin {
             mesh: &groomed[i].mesh,
             fields: &groomed[i].fields,
             patches: &patches[i],
@@ -50,9 +50,10 @@ pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>)
         .collect();
     let tile =
         steps.run("atlas", || atlas::bake(&skins, &square, [&fibres[0], &fibres[1]], &recipe, task.request.seed));
-    let worn = (0..groomed.len())
+    let carried = (0..groomed.len())
         .map(|i| {
-            let primitive = steps.run("wear", || task.wear(task.parts[i], &groomed[i], &patches[i], &tile));
+            let primitive =
+                steps.run("coat primitives", || task.coat_primitive(task.parts[i], &groomed[i], &patches[i], &tile));
             // Charts were measured in tiles; the square has its own texels.
             let texels_per_tile = f64::from(tile_m) * f64::from(texels) / f64::from(square.edge_m);
             let laid = Laid {
@@ -71,9 +72,9 @@ pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>)
         let (mesh, fields, seed) = (&groomed[i].mesh, &groomed[i].fields, skins[i].seed);
         let furred = |t: usize| mesh.triangles[t].iter().all(|&v| fields.length[v as usize] > 0.0);
         let at = judge::places(mesh, PLACES, seed, furred);
-        let worn =
-            judge::Worn { mesh, fields, patches: &patches[i], tile: &tile, hair: [&fibres[0], &fibres[1]], seed };
-        steps.run("judge", || judge::surface_tables(&worn, &[at]))
+        let carried =
+            judge::CoatedSkin { mesh, fields, patches: &patches[i], tile: &tile, hair: [&fibres[0], &fibres[1]], seed };
+        steps.run("judge", || judge::surface_tables(&carried, &[at]))
     });
     let accuracy = judged.into_iter().flatten().collect();
     let note = format!(
@@ -81,5 +82,5 @@ pub(super) fn dress(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps<'_>)
         task.preset.name,
         square.edge_m / texels as f32 * 1e3
     );
-    Ok(Dressed { tiles: vec![tile], worn, accuracy, notes: vec![note], warnings })
+    Ok(CoatedParts { tiles: vec![tile], primitives: carried, accuracy, notes: vec![note], warnings })
 }

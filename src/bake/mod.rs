@@ -11,11 +11,11 @@ use crate::asset::coat::{Fallback, refuse_second, write_coat};
 use crate::asset::{self, Asset, Part};
 use crate::coat::axes::axes;
 use crate::coat::hair::{TileHair, leaning};
-use crate::coat::judge::{Effort, Row, coverage_table};
+use crate::coat::judge::{CoverageRow, Effort, coverage_table};
 use crate::coat::measures::Measures;
+use crate::coat::primitive::coat_primitive;
 use crate::coat::seams::{WINDOWS, before_after};
 use crate::coat::tile::{TileRecipe, bake as bake_tile};
-use crate::coat::wear::wear;
 use crate::data::coat::{Blend, Coat, CoatPrimitive, Tile};
 use crate::data::patches::Patches;
 use crate::error::{Error, Result};
@@ -86,7 +86,7 @@ pub struct Baked {
     /// Comb and parameterisation of each furred part.
     pub laid: Vec<Laid>,
     /// Coverage of each tile against its strands, when asked for.
-    pub accuracy: Vec<Vec<Row>>,
+    pub accuracy: Vec<Vec<CoverageRow>>,
     /// Time per step, in order.
     pub steps: timing::Steps,
 }
@@ -161,13 +161,13 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
             None => tiles.push((preset, vec![index])),
         }
     }
-    let mut worn: Vec<(usize, Vec<CoatPrimitive>, Laid)> = Vec::new();
+    let mut carried: Vec<(usize, Vec<CoatPrimitive>, Laid)> = Vec::new();
     for (preset, parts) in &tiles {
         let task = Task { asset: &asset, preset, parts, request, scale: &scale };
-        let dressed = match request.method {
-            Method::Atlas { texels } => atlas::dress(&task, texels, &mut steps)?,
-            Method::Lapped => dress(&task, |seed| Parameterisation::Lapped { seed }, &mut steps)?,
-            Method::Uv(set) => dress(&task, |_| Parameterisation::Uv { set }, &mut steps)?,
+        let coated = match request.method {
+            Method::Atlas { texels } => atlas::coat_parts(&task, texels, &mut steps)?,
+            Method::Lapped => coat_parts(&task, |seed| Parameterisation::Lapped { seed }, &mut steps)?,
+            Method::Uv(set) => coat_parts(&task, |_| Parameterisation::Uv { set }, &mut steps)?,
         };
         let first = coat.tiles.len();
         let numbered = |primitive: CoatPrimitive| CoatPrimitive {
@@ -175,25 +175,25 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
             blend: primitive.blend.map(|blend| Blend { tile: first + blend.tile, ..blend }),
             ..primitive
         };
-        warnings.extend(dressed.tiles.iter().filter_map(|t| units::length_warning(t.height_m, scale.diagonal_m)));
-        notes.extend(dressed.notes);
-        for warning in dressed.warnings {
+        warnings.extend(coated.tiles.iter().filter_map(|t| units::length_warning(t.height_m, scale.diagonal_m)));
+        notes.extend(coated.notes);
+        for warning in coated.warnings {
             // What is said of the whole asset is said once.
             if !warnings.contains(&warning) {
                 warnings.push(warning);
             }
         }
-        baked.accuracy.extend(dressed.accuracy);
-        coat.tiles.extend(dressed.tiles);
-        worn.extend(
+        baked.accuracy.extend(coated.accuracy);
+        coat.tiles.extend(coated.tiles);
+        carried.extend(
             parts
                 .iter()
-                .zip(dressed.worn)
+                .zip(coated.primitives)
                 .map(|(&index, (primitives, laid))| (index, primitives.into_iter().map(numbered).collect(), laid)),
         );
     }
-    worn.sort_by_key(|(index, ..)| *index);
-    for (_, primitives, laid) in worn {
+    carried.sort_by_key(|(index, ..)| *index);
+    for (_, primitives, laid) in carried {
         coat.primitives.extend(primitives);
         baked.laid.push(laid);
     }
@@ -214,14 +214,14 @@ struct Task<'a> {
     scale: &'a Scale,
 }
 
-/// Tiles and what wears them.
-struct Dressed {
+/// Tiles and what carries them.
+struct CoatedParts {
     /// The preset's own, then those of its regions.
     tiles: Vec<Tile>,
     /// Per part of the task; tiles are numbered as above.
-    worn: Vec<(Vec<CoatPrimitive>, Laid)>,
+    primitives: Vec<(Vec<CoatPrimitive>, Laid)>,
     /// Per tile, where asked for.
-    accuracy: Vec<Vec<Row>>,
+    accuracy: Vec<Vec<CoverageRow>>,
     notes: Vec<String>,
     warnings: Vec<String>,
 }
@@ -241,13 +241,13 @@ impl Task<'_> {
         combine(self.request.seed, part as u64)
     }
 
-    /// What a part wears.
-    fn wear(&self, part: usize, groomed: &Groomed, patches: &Patches, tile: &Tile) -> CoatPrimitive {
+    /// What a part carries.
+    fn coat_primitive(&self, part: usize, groomed: &Groomed, patches: &Patches, tile: &Tile) -> CoatPrimitive {
         let at = &self.asset.parts[part];
         let local = |v, offset_m| at.local_offset(v, offset_m, self.scale.metres_per_unit);
         let axes = axes(&groomed.mesh, &groomed.fields.direction, patches);
-        let worn = wear(&groomed.mesh, &groomed.fields, &axes, patches, tile, self.seed(part), local);
-        CoatPrimitive { mesh: at.mesh, primitive: at.primitive, ..worn }
+        let carried = coat_primitive(&groomed.mesh, &groomed.fields, &axes, patches, tile, self.seed(part), local);
+        CoatPrimitive { mesh: at.mesh, primitive: at.primitive, ..carried }
     }
 }
 
@@ -262,7 +262,7 @@ fn recipe(preset: &Preset) -> TileRecipe {
 }
 
 /// Grows and bakes the tile of a preset, and measures it where that is asked for.
-fn tile_of(task: &Task<'_>, preset: &Preset, steps: &mut Steps<'_>) -> (Tile, Option<Vec<Row>>) {
+fn tile_of(task: &Task<'_>, preset: &Preset, steps: &mut Steps<'_>) -> (Tile, Option<Vec<CoverageRow>>) {
     let ([guard, undercoat], recipe, request) = (task.fibres(preset), recipe(preset), task.request);
     let edge_m = recipe.shells.tile_mm * 1e-3;
     let hair = steps.run("grow", || TileHair::grow(&guard, &undercoat, edge_m, request.seed));
@@ -276,7 +276,7 @@ fn tile_of(task: &Task<'_>, preset: &Preset, steps: &mut Steps<'_>) -> (Tile, Op
 }
 
 /// Bakes the tiles of a preset and its regions, and puts them on each part over patches of its own.
-fn dress(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: &mut Steps<'_>) -> Result<Dressed> {
+fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: &mut Steps<'_>) -> Result<CoatedParts> {
     let (others, request) = (regions::presets(task.preset)?, task.request);
     let (mut tiles, mut accuracy) = (Vec::new(), Vec::new());
     for preset in std::iter::once(task.preset).chain(&others) {
@@ -284,7 +284,7 @@ fn dress(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: &mut 
         tiles.push(tile);
         accuracy.extend(rows);
     }
-    let (mut worn, mut warnings) = (Vec::new(), Vec::new());
+    let (mut carried, mut warnings) = (Vec::new(), Vec::new());
     for &part in task.parts {
         let groomed =
             steps.run("groom", || skin::groom(task.asset, &task.asset.parts[part], task.preset, task.scale))?;
@@ -301,7 +301,7 @@ fn dress(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: &mut 
             })
         });
         let primitives = if others.is_empty() {
-            vec![steps.run("wear", || task.wear(part, &groomed, &patches, &tiles[0]))]
+            vec![steps.run("coat primitives", || task.coat_primitive(part, &groomed, &patches, &tiles[0]))]
         } else {
             regions::wear_all(task, part, &groomed, &patches, (&others, &tiles), steps)?
         };
@@ -311,9 +311,9 @@ fn dress(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: &mut 
             measures: Measures::new(&patches.stats, f64::from(tiles[0].shells.size), seams),
             ms,
         };
-        worn.push((primitives, laid));
+        carried.push((primitives, laid));
     }
-    Ok(Dressed { tiles, worn, accuracy, notes: Vec::new(), warnings })
+    Ok(CoatedParts { tiles, primitives: carried, accuracy, notes: Vec::new(), warnings })
 }
 
 fn preset_of<'a>(request: &'a Request, part: &Part) -> &'a Preset {

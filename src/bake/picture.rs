@@ -5,7 +5,7 @@ use super::units::{self, Units};
 use crate::asset;
 use crate::asset::strands::Export;
 use crate::coat::hair::TileHair;
-use crate::coat::wear::{is_furred, offset_over_height};
+use crate::coat::primitive::{is_furred, offset_over_height};
 use crate::data::camera::Camera;
 use crate::data::film::Film;
 use crate::data::mesh::Mesh;
@@ -171,7 +171,7 @@ impl Grown {
     }
 }
 
-/// How far the hair of a part reaches from its skin, m, where it wears a tile `height_m` high: as a bake of it has it.
+/// How far the hair of a part reaches from its skin, m, where it carries a tile `height_m` high: as a bake of it has it.
 fn reach_m(groomed: &Groomed, height_m: f32) -> f32 {
     let Groomed { mesh, fields, .. } = groomed;
     let length = |v: usize| offset_over_height(fields, v).length();

@@ -1,10 +1,10 @@
-//! Several presets on one part: which tile each triangle wears, and where one passes into another.
+//! Several presets on one part: which tile each triangle carries, and where one passes into another.
 
 use super::skin::{self, Groomed};
 use super::{Steps, Task};
 use crate::asset::image;
 use crate::coat::axes::axes;
-use crate::coat::wear::wear;
+use crate::coat::primitive::coat_primitive;
 use crate::data::coat::{Blend, CoatPrimitive, Tile};
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
@@ -34,7 +34,7 @@ pub(super) fn presets(preset: &Preset) -> Result<Vec<Preset>> {
     preset.regions.iter().map(load).collect()
 }
 
-/// What a part wears: one coat primitive for each tile that some triangle wears alone, and one for each pair that share
+/// What a part carries: one coat primitive for each tile that some triangle carries alone, and one for each pair that share
 /// triangles. `tiles` are the task's own and those of `presets`.
 pub(super) fn wear_all(
     task: &Task<'_>,
@@ -53,24 +53,24 @@ pub(super) fn wear_all(
     }
     let axes = axes(&own.mesh, &own.fields.direction, patches);
     let mixed = Mixed::new(&fields, tiles, &shares);
-    // Triangles by what they wear.
+    // Triangles by what they carry.
     let mut groups: BTreeMap<(usize, Option<usize>), Vec<usize>> = BTreeMap::new();
     for (t, triangle) in own.mesh.triangles.iter().enumerate() {
-        let mut worn: Vec<(usize, f32)> = (0..tiles.len())
+        let mut carried: Vec<(usize, f32)> = (0..tiles.len())
             .map(|tile| (tile, triangle.iter().map(|&v| shares[v as usize][tile]).sum()))
             .filter(|&(_, share)| share > 0.0)
             .collect();
         // Where three meet, the two there is most of.
-        worn.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        worn.truncate(2);
-        worn.sort_by_key(|&(tile, _)| tile);
-        groups.entry((worn[0].0, worn.get(1).map(|w| w.0))).or_default().push(t);
+        carried.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        carried.truncate(2);
+        carried.sort_by_key(|&(tile, _)| tile);
+        groups.entry((carried[0].0, carried.get(1).map(|w| w.0))).or_default().push(t);
     }
-    let dressed = |((tile, into), triangles): (&(usize, Option<usize>), &Vec<usize>)| {
+    let coated = |((tile, into), triangles): (&(usize, Option<usize>), &Vec<usize>)| {
         let fields = mixed.for_tile(&tiles[*tile]);
         let subset = subset(patches, triangles, tiles[0].edge_m / tiles[*tile].edge_m);
         let local = |v, offset_m| at.local_offset(v, offset_m, task.scale.metres_per_unit);
-        let worn = wear(&own.mesh, &fields, &axes, &subset, &tiles[*tile], task.seed(part), local);
+        let carried = coat_primitive(&own.mesh, &fields, &axes, &subset, &tiles[*tile], task.seed(part), local);
         let weight = |second: usize, v: u32| {
             let share = &shares[v as usize];
             let both = share[*tile] + share[second];
@@ -78,11 +78,12 @@ pub(super) fn wear_all(
         };
         let blend = into.map(|second| Blend {
             tile: second,
-            weight: worn.base_vertex.iter().map(|&v| weight(second, v)).collect(),
+            weight: carried.base_vertex.iter().map(|&v| weight(second, v)).collect(),
         });
-        CoatPrimitive { mesh: at.mesh, primitive: at.primitive, tile: *tile, blend, ..worn }
+        CoatPrimitive { mesh: at.mesh, primitive: at.primitive, tile: *tile, blend, ..carried }
     };
-    Ok(steps.run("wear", || groups.iter().map(dressed).filter(|worn| !worn.triangles.is_empty()).collect()))
+    Ok(steps
+        .run("coat primitives", || groups.iter().map(coated).filter(|carried| !carried.triangles.is_empty()).collect()))
 }
 
 /// Per vertex, the share of the preset's own tile and of each region's; they sum to 1.

@@ -1,10 +1,10 @@
-//! One part made ready to wear fur: its mesh in metres and the fields on it.
+//! One part made ready for fur: its mesh in metres and the fields on it.
 
 use super::comb::comb;
 use super::units::Scale;
 use crate::asset::material::BaseColour;
 use crate::asset::{Asset, Part, Pose, image};
-use crate::coat::wear::offset_over_height;
+use crate::coat::primitive::offset_over_height;
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::error::Result;

@@ -11,7 +11,7 @@ use crate::data::ray::DepthRange;
 use crate::data::ray::Ray;
 use crate::data::strands::Strands;
 use crate::math::Vec3;
-use crate::volume::medium::{Medium, Step};
+use crate::volume::medium::{Medium, MediumStep};
 use rayon::prelude::*;
 
 /// Transmittance below which nothing behind can be seen.
@@ -37,7 +37,7 @@ const OPAQUE_DEPTH: f32 = 9.2;
 #[derive(Debug, Default)]
 struct Met {
     crossings: Vec<Crossing>,
-    steps: Vec<Step>,
+    steps: Vec<MediumStep>,
 }
 
 /// Where a search for crossings may end.
@@ -73,7 +73,7 @@ impl<'a> Caster<'a> {
                 let pixel = |x: usize, met: &mut Met| {
                     let mut sum = Seen::default();
                     for sample in 0..per_pixel {
-                        sum.add(&self.look(&rays.ray(x, y, sample), range, met));
+                        sum.add(&self.trace(&rays.ray(x, y, sample), range, met));
                     }
                     sum.scaled(1.0 / per_pixel as f32)
                 };
@@ -151,7 +151,7 @@ impl<'a> Caster<'a> {
         rows.concat()
     }
 
-    fn look(&self, ray: &Ray, mut range: DepthRange, met: &mut Met) -> Seen {
+    fn trace(&self, ray: &Ray, mut range: DepthRange, met: &mut Met) -> Seen {
         let Met { crossings, steps } = met;
         crossings.clear();
         steps.clear();
@@ -317,7 +317,7 @@ impl<'a> Caster<'a> {
 }
 
 /// Adds what is seen of a volume's step.
-fn shade_step(medium: &Medium, step: &Step, weight: f32, seen: &mut Seen) {
+fn shade_step(medium: &Medium, step: &MediumStep, weight: f32, seen: &mut Seen) {
     seen.depth_m += weight * step.middle_m();
     seen.albedo += weight * medium.colour(step.t);
     seen.tangent += weight * medium.hair();

@@ -2,7 +2,7 @@
 
 use crate::data::ray::Ray;
 use crate::math::{Vec2, Vec3};
-use crate::stage::projection::View;
+use crate::stage::projection::Projection;
 
 /// The rays of a film, `supersampling²` per pixel, stratified.
 #[derive(Clone, Copy, Debug)]
@@ -10,7 +10,7 @@ pub enum Rays<'a> {
     /// Through a camera.
     Perspective {
         /// The camera, and how large its picture is.
-        view: View,
+        view: Projection,
         /// Rays per pixel edge.
         supersampling: usize,
     },

@@ -39,14 +39,14 @@ impl Inspect {
     /// Prints what the coat holds.
     ///
     /// # Errors
-    /// Where the file cannot be read or wears no coat.
+    /// Where the file cannot be read or has no coat.
     pub fn run(self, console: &Console) -> Result<()> {
         let (asset, coat) = asset::coat::read_coat(&self.file)?;
         let material = |mesh, primitive| {
             let part = asset.parts.iter().find(|part| (part.mesh, part.primitive) == (mesh, primitive));
             part.map_or_else(String::new, |part| part.material_name.clone())
         };
-        let materials = coat.primitives.iter().map(|worn| material(worn.mesh, worn.primitive)).collect();
+        let materials = coat.primitives.iter().map(|primitive| material(primitive.mesh, primitive.primitive)).collect();
         let start = Instant::now();
         let measures = Measures::all(&asset, &coat)?;
         let measured_in_ms = start.elapsed().as_secs_f64() * 1e3;
@@ -58,12 +58,12 @@ impl Inspect {
 fn print(inspection: &Inspection, out: &mut dyn Write) -> io::Result<()> {
     let coat = &inspection.coat;
     writeln!(out, "{}", inspection.file.display())?;
-    for (i, (worn, material)) in coat.primitives.iter().zip(&inspection.materials).enumerate() {
-        let into = worn.into_tile.map_or_else(String::new, |tile| format!(" passing into {tile}"));
+    for (i, (primitive, material)) in coat.primitives.iter().zip(&inspection.materials).enumerate() {
+        let into = primitive.into_tile.map_or_else(String::new, |tile| format!(" passing into {tile}"));
         writeln!(
             out,
             "  {material}: {} triangles, {} coat vertices, {} patches, {} fins, tile {}{into}",
-            worn.triangles, worn.vertices, worn.patches, worn.fins, worn.tile
+            primitive.triangles, primitive.vertices, primitive.patches, primitive.fins, primitive.tile
         )?;
         if let Some(measures) = inspection.measures.get(i) {
             lies(measures, out)?;
@@ -123,7 +123,7 @@ fn lies(m: &Measures, out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
         "    seams {:.0} cm; across them {:.2} of what chance would show, {:.2} as sharp as the rest",
-        m.seams_cm, seams.worn.difference_over_fake, seams.worn.variance_over_interior
+        m.seams_cm, seams.on_skin.difference_over_fake, seams.on_skin.variance_over_interior
     )
 }
 

@@ -19,7 +19,7 @@ use crate::reference;
 use crate::stage::defocus::{self, Lens};
 use crate::stage::file::Format;
 use crate::stage::options::Options;
-use crate::stage::projection::View;
+use crate::stage::projection::Projection;
 use crate::volume::scene::Lighting;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -214,7 +214,7 @@ impl Render {
         let Some(f_number) = self.f_number else { return Ok(()) };
         let start = Instant::now();
         let size = [picture.film.width, picture.film.height];
-        let view = View::new(camera, grown.origin_m(), size)?;
+        let view = Projection::new(camera, grown.origin_m(), size)?;
         let target_m = DVec3::from(camera.eye).distance(DVec3::from(camera.target)) as f32;
         let focus_m = self.focus.or_else(|| defocus::middle_depth_m(&picture.film, &view)).unwrap_or(target_m);
         let lens = Lens::of_f_number(f_number, camera.vfov_deg.to_radians() as f32, focus_m);
@@ -265,7 +265,7 @@ fn report(drawn: &Drawn) -> Value {
     let mut report = Report::new(&drawn.device, picture.steps.clone(), picture.steps.total_ms());
     for (name, count) in [
         ("strands", counts.strands),
-        ("pieces", counts.pieces),
+        ("segments", counts.segments),
         ("fragments", counts.fragments),
         ("steps", counts.steps),
         ("subelements", counts.subelements),

@@ -7,7 +7,7 @@ use crate::asset;
 use crate::error::Result;
 use crate::gpu::Choice;
 use crate::stage::file::Format;
-use crate::viewer::{self, Options};
+use crate::viewer::{self, ViewOptions};
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
@@ -88,13 +88,13 @@ impl View {
         })
     }
 
-    fn options(&self) -> Result<Options> {
-        Ok(Options {
+    fn options(&self) -> Result<ViewOptions> {
+        Ok(ViewOptions {
             device: self.device.parse::<Choice>()?,
             stage: self.stage.options()?,
             show: viewer::parse_show(&self.show)?,
             moment: self.animation.clone().map(|name| (name, self.time.unwrap_or(0.0))),
-            ..Options::default()
+            ..ViewOptions::default()
         })
     }
 }

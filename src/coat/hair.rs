@@ -20,7 +20,7 @@ pub struct TileHair {
     pub edge_m: f32,
     /// Height that no hair exceeds, m.
     pub height_m: f32,
-    /// The map it is worn under; identity for the tile itself.
+    /// The map it is mapped by; identity for the tile itself.
     pub skin_from_tile: Mat3,
 }
 
@@ -36,13 +36,13 @@ impl TileHair {
         Self { guard, undercoat, edge_m, height_m, skin_from_tile: Mat3::IDENTITY }
     }
 
-    /// The same hair as a skin wears it: every point mapped by `skin_from_tile`, which must keep x and y.
-    pub fn worn(&self, skin_from_tile: Mat3) -> Self {
+    /// The same hair as a skin carries it: every point mapped by `skin_from_tile`, which must keep x and y.
+    pub fn mapped(&self, skin_from_tile: Mat3) -> Self {
         let mut guard = self.guard.clone();
         guard.points_m.iter_mut().for_each(|p| *p = skin_from_tile * *p);
         Self {
             guard,
-            undercoat: self.undercoat.as_ref().map(|medium| medium.worn(skin_from_tile)),
+            undercoat: self.undercoat.as_ref().map(|medium| medium.mapped(skin_from_tile)),
             edge_m: self.edge_m,
             height_m: self.height_m * skin_from_tile.z_axis.z,
             skin_from_tile,

@@ -15,7 +15,7 @@ pub const ANGLES_DEG: [f32; 6] = [0.0, 20.0, 40.0, 60.0, 75.0, 85.0];
 
 /// One angle's result: coverages in [0, 1], errors as root mean square after a 4 × 4 box.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct CoverageRow {
     /// Angle between ray and skin normal, degrees.
     pub theta_deg: f32,
     /// Mean coverage of the strands, ray cast.
@@ -42,12 +42,12 @@ pub struct Effort {
     pub supersampling: usize,
 }
 
-/// Judges a tile worn under `skin_from_tile` (identity: no lean). The strands are those of `hair` under the same map.
-pub fn coverage_table(hair: &TileHair, tile: &Tile, skin_from_tile: Mat3, effort: Effort) -> Vec<Row> {
-    let worn = hair.worn(skin_from_tile);
-    let caster = Caster::new(worn.scene());
+/// Judges a tile mapped by `skin_from_tile` (identity: no lean). The strands are those of `hair` under the same map.
+pub fn coverage_table(hair: &TileHair, tile: &Tile, skin_from_tile: Mat3, effort: Effort) -> Vec<CoverageRow> {
+    let mapped = hair.mapped(skin_from_tile);
+    let caster = Caster::new(mapped.scene());
     let stack = Stack::new(tile);
-    let top_m = worn.height_m;
+    let top_m = mapped.height_m;
     ANGLES_DEG.map(|theta| row(&caster, &stack, tile, top_m, theta, skin_from_tile, effort)).to_vec()
 }
 
@@ -59,7 +59,7 @@ fn row(
     theta_deg: f32,
     skin_from_tile: Mat3,
     effort: Effort,
-) -> Row {
+) -> CoverageRow {
     let n = effort.pixels;
     // Nearly a texel: pixels must not all sit on texels' middles, where filtering blurs nothing.
     let pixel = PIXEL / tile.shells.size as f32;
@@ -78,7 +78,7 @@ fn row(
         }
     }
     let mean = |values: &[f32]| values.iter().sum::<f32>() / values.len() as f32;
-    Row {
+    CoverageRow {
         theta_deg,
         strands: mean(&truth),
         stack: mean(&ours),

@@ -1,6 +1,6 @@
 //! How well a coat lies on its skin, in numbers that reports and `inspect` print (`docs/steps/patch.md`).
 
-use super::seams::{BeforeAfter, look};
+use super::seams::{BeforeAfter, measure_coat};
 use crate::asset::{Asset, Part};
 use crate::data::coat::{CoatPrimitive, Sampled, Tile};
 use crate::data::mesh::Mesh;
@@ -16,9 +16,9 @@ use std::collections::HashMap;
 pub struct Measures {
     /// Patches, charts or islands.
     pub patches: usize,
-    /// Skin triangles that wear the coat, each once.
+    /// Skin triangles that carry the coat, each once.
     pub faces: usize,
-    /// Skin triangles that wear it more than once: 0 in a sound coat.
+    /// Skin triangles that carry it more than once: 0 in a sound coat.
     pub faces_doubled: usize,
     /// Skin triangles without coat.
     pub faces_bare: usize,
@@ -38,7 +38,7 @@ pub struct Measures {
     pub mirrored_cm2: f64,
     /// Area whose texture another place uses too, cm²; measured for an asset's own coordinates only.
     pub overlapped_cm2: f64,
-    /// How much seams show on the tile that is worn; nothing where hair was sampled on the skin itself, as an atlas' is.
+    /// How much seams show on the tile that lies on the skin; nothing where hair was sampled on the skin itself, as an atlas' is.
     pub seams: Option<SeamRows>,
 }
 
@@ -53,11 +53,11 @@ pub struct Range {
     pub p95: f64,
 }
 
-/// Seams as they are worn, and before anything was done against them where that is known.
+/// Seams as they lie on the skin, and before anything was done against them where that is known.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SeamRows {
-    /// As worn.
-    pub worn: SeamRow,
+    /// As coat_primitive.
+    pub on_skin: SeamRow,
     /// With every patch where chance put it in its tile; a file does not say.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub by_chance: Option<SeamRow>,
@@ -82,7 +82,7 @@ impl From<Seams> for SeamRow {
 
 impl From<BeforeAfter> for SeamRows {
     fn from(seams: BeforeAfter) -> Self {
-        Self { worn: seams.worn.into(), by_chance: Some(seams.by_chance.into()) }
+        Self { on_skin: seams.on_skin.into(), by_chance: Some(seams.by_chance.into()) }
     }
 }
 
@@ -107,29 +107,34 @@ impl Measures {
         }
     }
 
-    /// Measures what a file's primitive wears. The hair's direction is the axis that the file gives it.
+    /// Measures what a file's primitive carries. The hair's direction is the axis that the file gives it.
     ///
     /// # Errors
     /// As [`Part::mesh`].
-    pub fn worn(part: &Part, worn: &CoatPrimitive, tile: &Tile, metres_per_unit: f64) -> Result<Self> {
+    pub fn of_primitive(
+        part: &Part,
+        coat_primitive: &CoatPrimitive,
+        tile: &Tile,
+        metres_per_unit: f64,
+    ) -> Result<Self> {
         let skin = part.mesh(metres_per_unit)?;
         let mut times: HashMap<[u32; 3], usize> = skin.triangles.iter().map(|&t| (sorted(t), 0)).collect();
-        let triangles = worn.skin_triangles();
+        let triangles = coat_primitive.skin_triangles();
         for &triangle in &triangles {
             *times.entry(sorted(triangle)).or_default() += 1;
         }
-        let offset = worlds(part, worn, &worn.offset, metres_per_unit / f64::from(tile.height_m));
-        let axis = worlds(part, worn, &worn.axis, metres_per_unit);
+        let offset = worlds(part, coat_primitive, &coat_primitive.offset, metres_per_unit / f64::from(tile.height_m));
+        let axis = worlds(part, coat_primitive, &coat_primitive.axis, metres_per_unit);
         let mesh = Mesh { triangles, ..skin };
-        let patches = worn.patches();
+        let patches = coat_primitive.patches();
         let mut stats = patch::measure(&mesh, &axis, tile.edge_m, &patches);
-        let mut used = worn.patch.clone();
+        let mut used = coat_primitive.patch.clone();
         used.sort_unstable();
         used.dedup();
         stats.patches = used.len();
         let tiled = tile.sampled == Sampled::Square;
-        let seams =
-            tiled.then(|| SeamRows { worn: look(&mesh, &offset, &axis, &patches, tile).into(), by_chance: None });
+        let seams = tiled
+            .then(|| SeamRows { on_skin: measure_coat(&mesh, &offset, &axis, &patches, tile).into(), by_chance: None });
         let count = |wanted: fn(usize) -> bool| times.values().filter(|&&n| wanted(n)).count();
         Ok(Self {
             faces: count(|n| n == 1),
@@ -139,16 +144,21 @@ impl Measures {
         })
     }
 
-    /// [`Self::worn`] for every primitive of a coat that a file wears.
+    /// [`Self::of_primitive`] for every primitive of a coat that a file carries.
     ///
     /// # Errors
     /// As [`Part::mesh`].
     pub fn all(asset: &Asset, coat: &crate::data::coat::Coat) -> Result<Vec<Self>> {
-        let part = |worn: &CoatPrimitive| {
-            asset.parts.iter().find(|part| (part.mesh, part.primitive) == (worn.mesh, worn.primitive))
+        let part = |coat_primitive: &CoatPrimitive| {
+            asset
+                .parts
+                .iter()
+                .find(|part| (part.mesh, part.primitive) == (coat_primitive.mesh, coat_primitive.primitive))
         };
-        let measured = |worn: &CoatPrimitive| {
-            part(worn).map(|part| Self::worn(part, worn, &coat.tiles[worn.tile], coat.metres_per_unit))
+        let measured = |coat_primitive: &CoatPrimitive| {
+            part(coat_primitive).map(|part| {
+                Self::of_primitive(part, coat_primitive, &coat.tiles[coat_primitive.tile], coat.metres_per_unit)
+            })
         };
         coat.primitives.iter().filter_map(measured).collect()
     }
@@ -159,10 +169,10 @@ fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
     triangle
 }
 
-/// What vectors of coat vertices are at their skin vertices in world axes, times `scale`; zero where none is worn.
-fn worlds(part: &Part, worn: &CoatPrimitive, vectors: &[Vec3], scale: f64) -> Vec<Vec3> {
+/// What vectors of coat vertices are at their skin vertices in world axes, times `scale`; zero where none is coat_primitive.
+fn worlds(part: &Part, coat_primitive: &CoatPrimitive, vectors: &[Vec3], scale: f64) -> Vec<Vec3> {
     let mut world = vec![Vec3::ZERO; part.vertices()];
-    for (&base, local) in worn.base_vertex.iter().zip(vectors) {
+    for (&base, local) in coat_primitive.base_vertex.iter().zip(vectors) {
         world[base as usize] = (part.world_from_local(base as usize) * local.as_dvec3() * scale).as_vec3();
     }
     world

@@ -1,11 +1,11 @@
-//! Whether a coat's seams show on the tile that it wears (`docs/steps/patch.md`).
+//! Whether a coat's seams show on the tile that it carries (`docs/steps/patch.md`).
 
 use super::axes::Stand;
 use crate::data::coat::Tile;
 use crate::data::mesh::Mesh;
 use crate::data::patches::{Patches, Seams};
 use crate::data::shell::{Incidence, Stack, slab_optical_depth};
-use crate::fur::patch::{PIXEL, Place, compare_seams};
+use crate::fur::patch::{PIXEL, SeamPoint, compare_seams};
 
 pub use crate::fur::patch::WINDOWS;
 use crate::math::{Vec2, Vec3};
@@ -18,18 +18,18 @@ pub const ANGLES_DEG: [f32; 3] = [0.0, 45.0, 75.0];
 pub struct BeforeAfter {
     /// Every patch at an offset by chance.
     pub by_chance: Seams,
-    /// As they are worn.
-    pub worn: Seams,
+    /// As they lie on the skin.
+    pub on_skin: Seams,
 }
 
 /// Looks at the seams of `patches` on `mesh` as `tile` shows them: the luminance of the stack under hair that leans as
 /// `offset` does (root to the top of the stack over its height) and stands along `axis` (see [`axes`](super::axes::axes)),
 /// both one per skin vertex in world axes, from [`ANGLES_DEG`] and from the same side on both sides of a seam.
-pub fn look(mesh: &Mesh, offset: &[Vec3], axis: &[Vec3], patches: &Patches, tile: &Tile) -> Seams {
+pub fn measure_coat(mesh: &Mesh, offset: &[Vec3], axis: &[Vec3], patches: &Patches, tile: &Tile) -> Seams {
     compare(mesh, offset, axis, [patches], tile, WINDOWS)[0]
 }
 
-/// [`look`] before and after patches were moved against seams, through so many `windows` (say [`WINDOWS`]) each.
+/// [`measure_coat`] before and after patches were moved against seams, through so many `windows` (say [`WINDOWS`]) each.
 pub fn before_after(
     mesh: &Mesh,
     offset: &[Vec3],
@@ -39,11 +39,11 @@ pub fn before_after(
     windows: usize,
 ) -> BeforeAfter {
     if patches.chance_uv.is_empty() {
-        let [worn] = compare(mesh, offset, axis, [patches], tile, windows);
-        return BeforeAfter { by_chance: worn, worn };
+        let [on_skin] = compare(mesh, offset, axis, [patches], tile, windows);
+        return BeforeAfter { by_chance: on_skin, on_skin };
     }
-    let [worn, by_chance] = compare(mesh, offset, axis, [patches, &patches.by_chance()], tile, windows);
-    BeforeAfter { by_chance, worn }
+    let [on_skin, by_chance] = compare(mesh, offset, axis, [patches, &patches.by_chance()], tile, windows);
+    BeforeAfter { by_chance, on_skin }
 }
 
 fn compare<const N: usize>(
@@ -62,7 +62,7 @@ fn compare<const N: usize>(
     })
 }
 
-fn seen_at(place: &Place, offset: &[Vec3], axis: &[Vec3], theta_deg: f32, pixel: f32) -> Incidence {
+fn seen_at(place: &SeamPoint, offset: &[Vec3], axis: &[Vec3], theta_deg: f32, pixel: f32) -> Incidence {
     let (sin, cos) = libm::sincosf(theta_deg.to_radians());
     let ray = -(place.normal * cos + place.azimuth * sin);
     let ([a, b], along) = place.edge;

@@ -65,7 +65,7 @@ pub struct PrimitiveSummary {
     pub mesh: usize,
     /// Primitive of that mesh.
     pub primitive: usize,
-    /// Tile it wears.
+    /// Tile it carries.
     pub tile: usize,
     /// Tile that it passes into.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -82,7 +82,8 @@ pub struct PrimitiveSummary {
 
 /// Counts what `coat` holds.
 pub fn summarise(coat: &Coat) -> Summary {
-    let used = |tile: usize| coat.primitives.iter().filter(|worn| worn.tile == tile).map(uv_area).sum();
+    let used =
+        |tile: usize| coat.primitives.iter().filter(|coat_primitive| coat_primitive.tile == tile).map(uv_area).sum();
     let tiles: Vec<_> = coat.tiles.iter().enumerate().map(|(i, t)| tile(t, used(i))).collect();
     let primitives: Vec<_> = coat.primitives.iter().map(primitive).collect();
     let shells = |p: &PrimitiveSummary| tiles.get(p.tile).map_or(0, |tile| tile.layers.saturating_sub(1) as usize);
@@ -100,15 +101,15 @@ pub fn summarise(coat: &Coat) -> Summary {
 }
 
 /// Area of a primitive's triangles in texture space, in squares of one unit.
-fn uv_area(worn: &CoatPrimitive) -> f64 {
+fn uv_area(coat_primitive: &CoatPrimitive) -> f64 {
     let area = |triangle: &[u32; 3]| {
-        let [a, b, c] = triangle.map(|v| worn.uv[v as usize].as_dvec2());
+        let [a, b, c] = triangle.map(|v| coat_primitive.uv[v as usize].as_dvec2());
         0.5 * (b - a).perp_dot(c - a).abs()
     };
-    worn.triangles.iter().map(area).sum()
+    coat_primitive.triangles.iter().map(area).sum()
 }
 
-/// `used` is the area of texture space that all who wear it take together.
+/// `used` is the area of texture space that all who carry it take together.
 fn tile(tile: &Tile, used: f64) -> TileSummary {
     let shells = &tile.shells;
     let bytes = |images: &mut dyn Iterator<Item = &Image8>| images.map(|image| image.pixels.len()).sum::<usize>();
@@ -129,18 +130,18 @@ fn tile(tile: &Tile, used: f64) -> TileSummary {
     }
 }
 
-fn primitive(worn: &CoatPrimitive) -> PrimitiveSummary {
-    let mut patches = worn.patch.clone();
+fn primitive(coat_primitive: &CoatPrimitive) -> PrimitiveSummary {
+    let mut patches = coat_primitive.patch.clone();
     patches.sort_unstable();
     patches.dedup();
     PrimitiveSummary {
-        mesh: worn.mesh,
-        primitive: worn.primitive,
-        tile: worn.tile,
-        into_tile: worn.blend.as_ref().map(|blend| blend.tile),
-        vertices: worn.base_vertex.len(),
-        triangles: worn.triangles.len(),
+        mesh: coat_primitive.mesh,
+        primitive: coat_primitive.primitive,
+        tile: coat_primitive.tile,
+        into_tile: coat_primitive.blend.as_ref().map(|blend| blend.tile),
+        vertices: coat_primitive.base_vertex.len(),
+        triangles: coat_primitive.triangles.len(),
         patches: patches.len(),
-        fins: worn.fins.len(),
+        fins: coat_primitive.fins.len(),
     }
 }

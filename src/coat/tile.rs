@@ -2,7 +2,7 @@
 
 use super::fins::{FinParameters, texture};
 use super::hair::{TileHair, leaning};
-use super::shells::deposit::{Layout, Voxels, mean_slopes};
+use super::shells::deposit::{VoxelLayout, Voxels, mean_slopes};
 use super::shells::encode::{Raw, encode};
 use super::shells::{ShellParameters, ends, gains, shadow, undercoat};
 use crate::data::coat::{Sampled, Tile};
@@ -19,7 +19,7 @@ pub struct TileRecipe {
     pub fins: FinParameters,
     /// Skin colour factor, linear RGB.
     pub skin: Vec3,
-    /// Mean lean of the hair as worn, degrees: the gains are fitted there.
+    /// Mean lean of the hair on the skin, degrees: the gains are fitted there.
     pub lean_deg: f32,
 }
 
@@ -31,7 +31,7 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
     // The textures, the fin and the truth that gains are fitted to need nothing of each other.
     let shells = || {
         let slopes = mean_slopes(&hair.guard, slabs, hair.height_m);
-        let layout = Layout::tile(size, slabs, hair.edge_m, hair.height_m);
+        let layout = VoxelLayout::tile(size, slabs, hair.edge_m, hair.height_m);
         let mut voxels = Voxels::deposited(layout, &hair.guard, &slopes);
         let mut kappa = ends::guard_ends(&hair.guard, &voxels, &slopes);
         if let Some(medium) = &hair.undercoat {
@@ -50,8 +50,8 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
         (shells, slab_means(&transmittance, slabs))
     };
     let truth = || {
-        let worn = hair.worn(lean);
-        gains::strand_transmittance(worn.scene(), worn.edge_m, worn.height_m, lean)
+        let mapped = hair.mapped(lean);
+        gains::strand_transmittance(mapped.scene(), mapped.edge_m, mapped.height_m, lean)
     };
     let fin = || texture::composite(hair, &recipe.fins);
     let ((shells, slab_transmittance), (truth, fin)) = rayon::join(shells, || rayon::join(truth, fin));

@@ -1,4 +1,4 @@
-//! The product: tiles of hair and the primitives that wear them (`docs/extension/`).
+//! The product: tiles of hair and the primitives that carry them (`docs/extension/`).
 
 use super::image::Image8;
 use super::patches::Patches;
@@ -29,7 +29,7 @@ pub enum Sampled {
     Skin,
 }
 
-/// A piece of hair with its mean lean removed.
+/// Hair of a square with its mean lean removed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tile {
     /// Name of the preset it was grown from.
@@ -87,14 +87,14 @@ pub struct FinTexture {
     pub tangent: Vec<Image8>,
 }
 
-/// What one primitive of the asset wears. Arrays have one entry per coat vertex.
+/// What one primitive of the asset carries. Arrays have one entry per coat vertex.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CoatPrimitive {
     /// glTF mesh.
     pub mesh: usize,
     /// Primitive of that mesh.
     pub primitive: usize,
-    /// Tile it wears.
+    /// Tile it carries.
     pub tile: usize,
     /// Vertex of the base primitive that carries position, skin and morph data.
     pub base_vertex: Vec<u32>,

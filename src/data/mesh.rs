@@ -17,7 +17,7 @@ pub struct Mesh {
     /// Vertex positions, m.
     pub positions_m: Vec<Vec3>,
     /// Where the vertices are in the rest pose, m, where `positions_m` are in another: how many hairs there are and how
-    /// they clump is decided there, so that every pose wears the same hair.
+    /// they clump is decided there, so that every pose carries the same hair.
     pub rest_m: Option<Vec<Vec3>>,
     /// Unit vertex normals.
     pub normals: Vec<Vec3>,

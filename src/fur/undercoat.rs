@@ -1,7 +1,7 @@
 //! Undercoat as a density over the shell: how many hairs reach a height, how they crowd, how they block a ray
 //! (`docs/steps/march.md`).
 
-use super::groom::clump::{Grid, Nearby};
+use super::groom::clump::{ClumpGrid, Nearby};
 use super::groom::fibre::{Fibre, LENGTH_SPREAD};
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, Mask, Scalar, Vec3s};
@@ -111,7 +111,7 @@ impl Undercoat {
     /// pattern too (what [`simplex_lanes`] asks for).
     pub fn on_torus(mut self, edge_m: f32) -> Self {
         let threes = (edge_m / (3.0 * self.wavelength_m())).round().max(1.0);
-        self.clump_spacing_m = Grid::on_torus(self.clump_spacing_m, edge_m).spacing_m;
+        self.clump_spacing_m = ClumpGrid::on_torus(self.clump_spacing_m, edge_m).spacing_m;
         self.pattern.wavelength = edge_m / (3.0 * threes) / self.clump_spacing_m;
         self.torus_m = Some(edge_m);
         self
@@ -182,7 +182,7 @@ impl Undercoat {
         let mut waiting = columns.strength.gt(F32s::splat(1e-3)).bits();
         if waiting != 0 {
             let period = self.torus_m.map(|edge_m| (edge_m / self.clump_spacing_m).round());
-            let grid = Grid { spacing_m: self.clump_spacing_m, period };
+            let grid = ClumpGrid { spacing_m: self.clump_spacing_m, period };
             let over = root_m.over(F32s::splat(self.clump_spacing_m));
             let homes = Vec3s::new(over.x.floor(), over.y.floor(), over.z.floor()).rows();
             // Points close by mostly share their cell.

@@ -2,7 +2,7 @@
 //! Greer 1997, "Triangle scan conversion using 2D homogeneous coordinates"). Serves triangles that reach behind the eye.
 
 use crate::math::{Vec2, Vec3};
-use crate::stage::projection::View;
+use crate::stage::projection::Projection;
 use crate::volume::bins::Reach;
 
 /// A triangle ready to be met by the rays of a view.
@@ -15,7 +15,7 @@ pub struct Flat {
 
 /// Where a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Meeting {
+pub struct ScreenHit {
     /// Depth along the optical axis, m.
     pub z_m: f32,
     /// Barycentric coordinates.
@@ -41,7 +41,7 @@ impl Flat {
     }
 
     /// Meets the ray along (x, y, 1) in camera axes, from either side.
-    pub fn meet(&self, ray: Vec3) -> Option<Meeting> {
+    pub fn meet(&self, ray: Vec3) -> Option<ScreenHit> {
         let e = self.planes.map(|plane| plane.dot(ray));
         let inside = (e[0] >= 0.0 && e[1] >= 0.0 && e[2] >= 0.0) || (e[0] <= 0.0 && e[1] <= 0.0 && e[2] <= 0.0);
         let sum = e[0] + e[1] + e[2];
@@ -49,12 +49,12 @@ impl Flat {
             return None;
         }
         let z_m = self.volume / sum;
-        (z_m > 0.0).then(|| Meeting { z_m, barycentric: Vec3::from(e) / sum })
+        (z_m > 0.0).then(|| ScreenHit { z_m, barycentric: Vec3::from(e) / sum })
     }
 }
 
 /// What a triangle in camera axes may touch: everything where it reaches behind the near plane.
-pub fn reach(view: &View, corners: &[Vec3; 3]) -> Reach {
+pub fn reach(view: &Projection, corners: &[Vec3; 3]) -> Reach {
     let behind = corners.iter().filter(|p| p.z <= view.near_m).count();
     if behind == 3 {
         return Reach::NOTHING;
@@ -71,6 +71,6 @@ pub fn reach(view: &View, corners: &[Vec3; 3]) -> Reach {
 }
 
 /// The ray through the middle of pixel (x, y), in camera axes, of depth 1.
-pub fn pixel_ray(view: &View, x: usize, y: usize) -> Vec3 {
+pub fn pixel_ray(view: &Projection, x: usize, y: usize) -> Vec3 {
     ((Vec2::new(x as f32 + 0.5, y as f32 + 0.5) - view.centre_px) / view.focal_px).extend(1.0)
 }

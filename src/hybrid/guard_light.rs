@@ -1,6 +1,6 @@
 //! Light on guard hair, at some places along each strand.
 
-use super::strands::{LOOKS, look_s};
+use super::strands::{LIT_POINTS, lit_point_s};
 use crate::data::strands::Strands;
 use crate::hybrid::prepared::Prepared;
 use crate::math::Vec3;
@@ -25,16 +25,16 @@ pub struct GuardShader<'a> {
     top_m: f32,
     /// Hair area above heights per skin area, by their share of `top_m`, where the fields are 1.
     above: Table,
-    /// Where looks are taken.
-    sites: Vec<LookSite>,
+    /// Where strands are lit.
+    sites: Vec<LitPoint>,
 }
 
-/// Where on a strand a look is taken.
-struct LookSite {
+/// Where on a strand it is lit.
+struct LitPoint {
     /// Along the strand, in [0, 1].
     s: f32,
-    piece: usize,
-    /// Along the piece, in [0, 1].
+    segment: usize,
+    /// Along the segment, in [0, 1].
     along: f32,
 }
 
@@ -84,11 +84,11 @@ impl<'a> GuardShader<'a> {
         let above = Table::new(|x| layers.iter().flatten().map(|layer| layer.above(x * top_m)).sum());
         let last = (strands.points_per_strand - 1) as f32;
         let site = |i: usize| {
-            let s = look_s(i);
-            let piece = ((s * last) as usize).min(strands.points_per_strand - 2);
-            LookSite { s, piece, along: s * last - piece as f32 }
+            let s = lit_point_s(i);
+            let segment = ((s * last) as usize).min(strands.points_per_strand - 2);
+            LitPoint { s, segment, along: s * last - segment as f32 }
         };
-        let sites = (0..LOOKS).map(site).collect();
+        let sites = (0..LIT_POINTS).map(site).collect();
         Self { prepared, strands, shadows, eye_m, albedo_share, top_m, above, sites }
     }
 
@@ -111,7 +111,7 @@ impl<'a> GuardShader<'a> {
         });
     }
 
-    /// The looks of some strands, root first, into `out`, a row for each.
+    /// Radiance at the lit points of some strands, root first, into `out`, a row for each.
     pub fn strands(&self, strands: &[u32], out: &mut [Vec3Row]) {
         lanes::run(Shade { shader: self, strands, out });
     }
@@ -141,19 +141,19 @@ impl<'a> GuardShader<'a> {
         // The hair's direction turns evenly from point to point.
         let turn = |i: usize| if i == 0 || i >= last { 2.0 } else { 1.0 };
         let step = |i: usize| (point(i + 1) - point(i.saturating_sub(1))) * turn(i);
-        let mut looks = [Vec3::ZERO; LOOKS];
+        let mut lit = [Vec3::ZERO; LIT_POINTS];
         for first in (0..self.sites.len()).step_by(I::LANES) {
             let count = I::LANES.min(self.sites.len() - first);
             let (mut at_m, mut along, mut s) = (Vec3Row::default(), Vec3Row::default(), Row::default());
             for (lane, site) in self.sites[first..first + count].iter().enumerate() {
-                at_m.set(lane, point(site.piece).lerp(point(site.piece + 1), site.along));
-                along.set(lane, step(site.piece).lerp(step(site.piece + 1), site.along));
+                at_m.set(lane, point(site.segment).lerp(point(site.segment + 1), site.along));
+                along.set(lane, step(site.segment).lerp(step(site.segment + 1), site.along));
                 s.0[lane] = site.s;
             }
             let at_m = Vec3s::<I>::of(&at_m);
             let height_m = (at_m - Vec3s::splat(points[0])).dot(Vec3s::splat(normal));
             let normal = Vec3s::splat(normal);
-            let spot = Spot {
+            let site = GuardSite {
                 at_m,
                 albedo: self.ramp(F32s::of(&s)).times(Vec3s::splat(strands.tint[strand])),
                 hair: Vec3s::of(&along).normalized_or(Vec3s::splat(lean)),
@@ -166,14 +166,14 @@ impl<'a> GuardShader<'a> {
                     None => F32s::splat(0.0),
                 },
             };
-            let Vec3s { x, y, z } = self.radiance(&spot);
+            let Vec3s { x, y, z } = self.radiance(&site);
             let log_radiance = Vec3s::new(log(x), log(y), log(z)).rows();
-            for (lane, look) in looks[first..first + count].iter_mut().enumerate() {
-                *look = log_radiance.lane(lane);
+            for (lane, lit) in lit[first..first + count].iter_mut().enumerate() {
+                *lit = log_radiance.lane(lane);
             }
         }
         let mut row = Vec3Row::default();
-        looks.iter().enumerate().for_each(|(i, &look)| row.set(i, look));
+        lit.iter().enumerate().for_each(|(i, &lit)| row.set(i, lit));
         row
     }
 
@@ -190,25 +190,25 @@ impl<'a> GuardShader<'a> {
     }
 
     #[inline(always)]
-    fn radiance<I: Isa>(&self, spot: &Spot<I>) -> Vec3s<I> {
-        let share = spot.albedo * F32s::splat(self.albedo_share);
+    fn radiance<I: Isa>(&self, site: &GuardSite<I>) -> Vec3s<I> {
+        let share = site.albedo * F32s::splat(self.albedo_share);
         let power = Vec3s::new(shadow_power(share.x), shadow_power(share.y), shadow_power(share.z));
         let lighting = self.prepared.lighting;
         let ambient = share.times(Vec3s::splat(lighting.ambient));
-        let mut sum = ambient.times(through(power, sky_depths(spot.above)));
+        let mut sum = ambient.times(through(power, sky_depths(site.above)));
         let lobes = self.prepared.lobes.map(F32s::splat);
         for (i, light) in lighting.all().enumerate() {
-            let (to_light, irradiance) = light.at_lanes(spot.at_m);
-            let angles = Angles::of_lanes(spot.hair, to_light, spot.to_eye);
+            let (to_light, irradiance) = light.at_lanes(site.at_m);
+            let angles = Angles::of_lanes(site.hair, to_light, site.to_eye);
             let s = lobes.scatter(angles);
-            let twice = spot.albedo.times(spot.albedo) * s.twice;
-            let scattered = (spot.albedo * s.once + twice).plus(s.plain);
+            let twice = site.albedo.times(site.albedo) * s.twice;
+            let scattered = (site.albedo * s.once + twice).plus(s.plain);
             let depth = match i {
-                0 => spot.key_depth,
-                _ => slant_depths(spot.above, to_light, spot.normal, spot.lean),
+                0 => site.key_depth,
+                _ => slant_depths(site.above, to_light, site.normal, site.lean),
             };
             let shadow = through(power, depth);
-            let open = terminators(to_light, spot.normal);
+            let open = terminators(to_light, site.normal);
             let irradiance = irradiance * (angles.cos_in() * open);
             sum = sum + scattered.times(shadow).times(irradiance);
         }
@@ -247,7 +247,7 @@ impl lanes::Work for Shade<'_, '_> {
 }
 
 /// Points of a hair to be lit.
-struct Spot<I: Isa> {
+struct GuardSite<I: Isa> {
     at_m: Vec3s<I>,
     albedo: Vec3s<I>,
     hair: Vec3s<I>,

@@ -11,7 +11,7 @@ pub struct Picture {
     /// Time and memory per step: the rows of Andersen et al. 2016, Table 1. Steps that run tile by tile are given by their share of
     /// the threads' time; bytes are what they hold at most.
     pub steps: Steps,
-    /// Strands drawn, pieces and fragments of them, summed over bands.
+    /// Strands drawn, segments and fragments of them, summed over bands.
     pub counts: Counts,
 }
 
@@ -20,8 +20,8 @@ pub struct Picture {
 pub struct Counts {
     /// Strands that were not hidden.
     pub strands: u64,
-    /// Their pieces.
-    pub pieces: u64,
+    /// Their segments.
+    pub segments: u64,
     /// Fragments of guard hair composited.
     pub fragments: u64,
     /// Steps through undercoat.

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::math::Vec3;
 use crate::metrics::timing::Steps;
 use crate::shade::lobes::Lobes;
-use crate::stage::projection::View;
+use crate::stage::projection::Projection;
 use crate::volume::march::content::Content;
 use crate::volume::march::volume::{Volume, splits};
 use crate::volume::mean::MeanShadow;
@@ -52,7 +52,7 @@ pub fn prepare<'a>(scene: &Scene<'a>, lighting: &'a Lighting, settings: &Setting
 
 impl Prepared<'_> {
     /// The undercoat as finely as `view` resolves it.
-    pub(super) fn volume(&self, view: &View) -> Option<Volume<'_>> {
+    pub(super) fn volume(&self, view: &Projection) -> Option<Volume<'_>> {
         let content = self.content.as_ref()?;
         Some(Volume::new(content, subdivisions(&self.scene, content, view, &self.settings)))
     }
@@ -60,7 +60,7 @@ impl Prepared<'_> {
 
 /// Subdivisions d per triangle: sub-elements about as large in pixels as asked for, or as finely as clumps need it where
 /// that can be stored, but no finer than what there is to see.
-fn subdivisions(scene: &Scene<'_>, content: &Content<'_>, view: &View, settings: &Settings) -> Vec<u8> {
+fn subdivisions(scene: &Scene<'_>, content: &Content<'_>, view: &Projection, settings: &Settings) -> Vec<u8> {
     let resolution = &settings.resolution;
     let focal_px = view.focal_px / settings.edge_samples() as f32;
     let detail_m = content.shell.undercoat.detail_m();

@@ -24,9 +24,9 @@ pub enum Blending {
     },
 }
 
-/// A stretch of a ray through undercoat: a virtual fragment.
+/// A virtual fragment: an interval of a ray through undercoat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Stretch {
+pub struct VirtualFragment {
     /// Depth where it begins, m.
     pub from_m: f32,
     /// Depth where it ends, m.
@@ -43,7 +43,7 @@ pub struct Stretch {
 
 /// What a thing of full opacity looks like.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Face {
+pub struct Appearance {
     /// Depth along the optical axis, m.
     pub z_m: f32,
     /// Radiance, linear RGB.
@@ -79,7 +79,7 @@ pub struct Pixel {
 
 /// Which layer a contribution belongs to.
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum FragmentKind {
     Guard,
     Undercoat,
     Skin,
@@ -93,7 +93,7 @@ struct Front<const ALL: bool> {
 
 impl<const ALL: bool> Front<ALL> {
     #[inline(always)]
-    fn add(&mut self, alpha: f32, face: &Face, kind: Kind) {
+    fn add(&mut self, alpha: f32, face: &Appearance, kind: FragmentKind) {
         let weight = self.through * alpha;
         self.pixel.radiance += weight * face.radiance;
         self.through -= weight;
@@ -103,9 +103,9 @@ impl<const ALL: bool> Front<ALL> {
             self.pixel.normal += weight * face.normal;
             self.pixel.z_m += weight * face.z_m;
             match kind {
-                Kind::Guard => self.pixel.guard += weight,
-                Kind::Undercoat => self.pixel.undercoat += weight,
-                Kind::Skin => {}
+                FragmentKind::Guard => self.pixel.guard += weight,
+                FragmentKind::Undercoat => self.pixel.undercoat += weight,
+                FragmentKind::Skin => {}
             }
         }
     }
@@ -123,24 +123,24 @@ impl<const ALL: bool> Front<ALL> {
         self.through = 0.0;
     }
 
-    /// The part of a stretch between two depths.
+    /// The part of a virtual fragment between two depths.
     #[inline(always)]
-    fn add_part(&mut self, stretch: &Stretch, from_m: f32, to_m: f32) {
-        let extent = stretch.to_m - stretch.from_m;
+    fn add_part(&mut self, virtual_fragment: &VirtualFragment, from_m: f32, to_m: f32) {
+        let extent = virtual_fragment.to_m - virtual_fragment.from_m;
         let share = if extent > 0.0 { (to_m - from_m) / extent } else { 1.0 };
-        let alpha = 1.0 - exp_negative(-stretch.depth * share);
-        let face = Face {
+        let alpha = 1.0 - exp_negative(-virtual_fragment.depth * share);
+        let face = Appearance {
             z_m: 0.5 * (from_m + to_m),
-            radiance: stretch.radiance,
-            albedo: stretch.albedo,
-            tangent: stretch.tangent,
+            radiance: virtual_fragment.radiance,
+            albedo: virtual_fragment.albedo,
+            tangent: virtual_fragment.tangent,
             normal: Vec3::ZERO,
         };
-        self.add(alpha, &face, Kind::Undercoat);
+        self.add(alpha, &face, FragmentKind::Undercoat);
     }
 }
 
-/// Orders a pixel's fragments by (depth, id), joins neighbouring pieces of one hair, since together they cover it once, and
+/// Orders a pixel's fragments by (depth, id), joins neighbouring segments of one hair, since together they cover it once, and
 /// leaves out what lies behind a front of transmittance `hidden`: it could not be seen whatever else comes before it.
 ///
 /// Returns how many are left. `veil` receives the transmittance up to and with each of them.
@@ -184,63 +184,66 @@ fn sort(fragments: &mut [Fragment]) {
     }
 }
 
-/// Composites front to back. `fragments` are ordered by [`settle`], `stretches` by where they begin; `face` says what a
+/// Composites front to back. `fragments` are ordered by [`settle`], `virtual_fragments` by where they begin; `face` says what a
 /// fragment's hair looks like, `skin` what lies behind all. Behind a front that lets through less than `opaque` nothing is looked at:
 /// the front stands for it. [`Layers::Light`] leaves out what it does not hold.
 #[inline(always)]
 pub fn composite(
     layers: Layers,
     fragments: &[Fragment],
-    stretches: &[Stretch],
+    virtual_fragments: &[VirtualFragment],
     blending: Blending,
     opaque: f32,
-    skin: impl FnOnce() -> Option<Face>,
-    face: impl Fn(&Fragment) -> Face,
+    skin: impl FnOnce() -> Option<Appearance>,
+    face: impl Fn(&Fragment) -> Appearance,
 ) -> Pixel {
     match layers {
-        Layers::Light => blend::<false>(fragments, stretches, blending, opaque, skin, face),
-        Layers::LightAndDepth | Layers::All => blend::<true>(fragments, stretches, blending, opaque, skin, face),
+        Layers::Light => blend::<false>(fragments, virtual_fragments, blending, opaque, skin, face),
+        Layers::LightAndDepth | Layers::All => {
+            blend::<true>(fragments, virtual_fragments, blending, opaque, skin, face)
+        }
     }
 }
 
 #[inline(always)]
 fn blend<const ALL: bool>(
     fragments: &[Fragment],
-    stretches: &[Stretch],
+    virtual_fragments: &[VirtualFragment],
     blending: Blending,
     opaque: f32,
-    skin: impl FnOnce() -> Option<Face>,
-    face: impl Fn(&Fragment) -> Face,
+    skin: impl FnOnce() -> Option<Appearance>,
+    face: impl Fn(&Fragment) -> Appearance,
 ) -> Pixel {
     let mut front = Front::<ALL> { pixel: Pixel::default(), through: 1.0 };
     let mut next = 0;
     let hair = |front: &mut Front<ALL>, fragment: &Fragment| {
-        front.add(fragment.alpha(), &face(fragment), Kind::Guard);
+        front.add(fragment.alpha(), &face(fragment), FragmentKind::Guard);
     };
-    for stretch in stretches {
+    for virtual_fragment in virtual_fragments {
         if front.through < opaque {
             break;
         }
-        while next < fragments.len() && fragments[next].z_m() <= stretch.from_m && front.through >= opaque {
+        while next < fragments.len() && fragments[next].z_m() <= virtual_fragment.from_m && front.through >= opaque {
             hair(&mut front, &fragments[next]);
             next += 1;
         }
         match blending {
             Blending::Virtual { .. } => {
-                let mut from_m = stretch.from_m;
-                while next < fragments.len() && fragments[next].z_m() < stretch.to_m && front.through >= opaque {
+                let mut from_m = virtual_fragment.from_m;
+                while next < fragments.len() && fragments[next].z_m() < virtual_fragment.to_m && front.through >= opaque
+                {
                     let to_m = fragments[next].z_m().max(from_m);
-                    front.add_part(stretch, from_m, to_m);
+                    front.add_part(virtual_fragment, from_m, to_m);
                     hair(&mut front, &fragments[next]);
                     from_m = to_m;
                     next += 1;
                 }
-                if stretch.to_m > from_m || stretch.from_m == stretch.to_m {
-                    front.add_part(stretch, from_m, stretch.to_m);
+                if virtual_fragment.to_m > from_m || virtual_fragment.from_m == virtual_fragment.to_m {
+                    front.add_part(virtual_fragment, from_m, virtual_fragment.to_m);
                 }
             }
             Blending::Simplified { attenuation_per_m } => {
-                let mut alpha = 1.0 - exp_negative(-stretch.depth);
+                let mut alpha = 1.0 - exp_negative(-virtual_fragment.depth);
                 let mut unoccluded = 1.0;
                 for fragment in &fragments[next..] {
                     if unoccluded < opaque || alpha <= 0.0 {
@@ -248,17 +251,17 @@ fn blend<const ALL: bool>(
                     }
                     // Weighted by the fragment's own opacity, so that a hair's thinner share of a pixel takes less.
                     let own = fragment.alpha() * unoccluded;
-                    alpha -= own * exp_negative(-attenuation_per_m * (fragment.z_m() - stretch.from_m));
+                    alpha -= own * exp_negative(-attenuation_per_m * (fragment.z_m() - virtual_fragment.from_m));
                     unoccluded -= own;
                 }
-                let look = Face {
-                    z_m: stretch.from_m,
-                    radiance: stretch.radiance,
-                    albedo: stretch.albedo,
-                    tangent: stretch.tangent,
+                let appearance = Appearance {
+                    z_m: virtual_fragment.from_m,
+                    radiance: virtual_fragment.radiance,
+                    albedo: virtual_fragment.albedo,
+                    tangent: virtual_fragment.tangent,
                     normal: Vec3::ZERO,
                 };
-                front.add(alpha.max(0.0), &look, Kind::Undercoat);
+                front.add(alpha.max(0.0), &appearance, FragmentKind::Undercoat);
             }
         }
     }
@@ -271,7 +274,7 @@ fn blend<const ALL: bool>(
     if front.through < opaque {
         front.fill();
     } else if let Some(skin) = skin() {
-        front.add(1.0, &skin, Kind::Skin);
+        front.add(1.0, &skin, FragmentKind::Skin);
     }
     front.pixel.alpha = 1.0 - front.through;
     front.pixel

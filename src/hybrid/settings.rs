@@ -6,7 +6,7 @@ use crate::data::camera::Camera;
 use crate::data::film::Layers;
 use crate::error::Result;
 use crate::math::DVec3;
-use crate::stage::projection::View;
+use crate::stage::projection::Projection;
 use crate::volume::march::Stepping;
 use crate::volume::march::content::Resolution;
 
@@ -89,16 +89,16 @@ impl Settings {
     }
 
     /// How hair too thin for its pixels is drawn in a view of samples.
-    pub(super) fn thinning(&self, view: &View) -> Thinning {
+    pub(super) fn thinning(&self, view: &Projection) -> Thinning {
         Thinning::new(view, self.hair_px * self.edge_samples() as f32)
     }
 
     /// What the camera shows, sample by sample, of a mesh at `origin_m`.
     ///
     /// # Errors
-    /// As [`View::new`].
-    pub(super) fn view(&self, camera: &Camera, origin_m: DVec3) -> Result<View> {
-        View::new(camera, origin_m, self.size.map(|n| n * self.edge_samples()))
+    /// As [`Projection::new`].
+    pub(super) fn view(&self, camera: &Camera, origin_m: DVec3) -> Result<Projection> {
+        Projection::new(camera, origin_m, self.size.map(|n| n * self.edge_samples()))
     }
 }
 

@@ -2,10 +2,10 @@
 
 use super::flat::{Flat, pixel_ray};
 use super::prepared::Prepared;
-use super::resolve::Face;
+use super::resolve::Appearance;
 use crate::math::Vec3;
 use crate::math::fast::exp_negative;
-use crate::stage::projection::View;
+use crate::stage::projection::Projection;
 use crate::volume::bins::TILE;
 use crate::volume::scene::{Layer, sky_depth, slant_depth, terminator};
 use std::f32::consts::FRAC_1_PI;
@@ -29,7 +29,7 @@ impl SkinTile {
     ///
     /// Both sides are opaque. Of equal depths the triangle with the lower index stays.
     pub fn draw(
-        view: &View,
+        view: &Projection,
         column: usize,
         row: usize,
         triangles: &[u32],
@@ -60,7 +60,7 @@ impl SkinTile {
 }
 
 /// What skin looks like where a ray from the eye along `direction` meets triangle `t`: diffuse, under all of its hair.
-pub fn shade(prepared: &Prepared<'_>, t: u32, barycentric: Vec3, direction: Vec3, z_m: f32) -> Face {
+pub fn shade(prepared: &Prepared<'_>, t: u32, barycentric: Vec3, direction: Vec3, z_m: f32) -> Appearance {
     let Prepared { scene, lighting, normals, mean, .. } = prepared;
     let corners = scene.skin.triangles[t as usize].map(|v| v as usize);
     let b = barycentric;
@@ -89,5 +89,5 @@ pub fn shade(prepared: &Prepared<'_>, t: u32, barycentric: Vec3, direction: Vec3
             radiance += light.irradiance * albedo * (FRAC_1_PI * cosine * shadow * terminator(light.to_light, normal));
         }
     }
-    Face { z_m, radiance, albedo, tangent: Vec3::ZERO, normal }
+    Appearance { z_m, radiance, albedo, tangent: Vec3::ZERO, normal }
 }

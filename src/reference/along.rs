@@ -1,10 +1,10 @@
 //! Undercoat and skin along one ray, found as far as somebody looks.
 
-use super::bvh::Ray;
-use super::medium::Medium;
-use super::piece::Piece;
-use super::point::ShellPoint;
-use super::skin::{Plane, Skin};
+use super::bvh::DRay;
+use super::interval::MediumInterval;
+use super::medium::DMedium;
+use super::point::DShellPoint;
+use super::skin::{Plane, SkinBvh};
 use crate::fur::groom::clump::Nearby;
 
 /// Share of the distance by which skin may lie farther along a ray than along one of the same part of a pixel.
@@ -14,16 +14,16 @@ const GRAZING: f64 = 0.02;
 #[derive(Clone, Debug)]
 pub struct Along {
     /// The ray.
-    pub ray: Ray,
+    pub ray: DRay,
     /// Where it meets skin.
-    pub skin: Option<(f64, ShellPoint)>,
+    pub skin: Option<(f64, DShellPoint)>,
     plane: Option<Plane>,
     /// Undercoat found so far, nearest first.
-    pub pieces: Vec<Piece>,
+    pub intervals: Vec<MediumInterval>,
     /// How much of the skin has been seen.
     pub skin_seen: f64,
     done_m: f64,
-    /// Whether the last stretch was empty.
+    /// Whether the last interval was empty.
     empty: bool,
     /// Clump centres around the last point: the next one mostly shares them.
     nearby: Nearby,
@@ -31,11 +31,11 @@ pub struct Along {
 
 impl Along {
     /// Of a ray.
-    pub fn new(ray: Ray, skin: &Skin) -> Self {
+    pub fn new(ray: DRay, skin: &SkinBvh) -> Self {
         let met = skin.meet(&ray, 0.0);
-        let plane = met.map(|(_, place)| skin.plane(place.triangle));
-        let (pieces, nearby) = (Vec::new(), Nearby::default());
-        Self { ray, skin: met, plane, pieces, skin_seen: 0.0, done_m: 0.0, empty: true, nearby }
+        let plane = met.map(|(_, point)| skin.plane(point.triangle));
+        let (intervals, nearby) = (Vec::new(), Nearby::default());
+        Self { ray, skin: met, plane, intervals, skin_seen: 0.0, done_m: 0.0, empty: true, nearby }
     }
 
     /// Where the skin ends it, m.
@@ -44,35 +44,35 @@ impl Along {
     }
 
     /// How much farther than along this ray all lies along one close by: as the skin does.
-    pub fn farther_m(&self, ray: &Ray) -> f64 {
+    pub fn farther_m(&self, ray: &DRay) -> f64 {
         let farther_m = self.plane.map_or(0.0, |plane| plane.meet_m(ray) - self.far_m());
         // A plane seen on edge tells nothing.
         if farther_m.abs() < self.far_m() * GRAZING { farther_m } else { 0.0 }
     }
 
     /// Sees undercoat up to `to_m`, from where `view` has come: less is left of it then.
-    pub fn see(&mut self, medium: Option<&Medium<'_>>, view: &mut View, to_m: f64) {
+    pub fn see(&mut self, medium: Option<&DMedium<'_>>, view: &mut ViewLeft, to_m: f64) {
         let to_m = to_m.min(self.far_m());
         while view.left > 0.0 {
-            if view.next == self.pieces.len() {
+            if view.next == self.intervals.len() {
                 match medium {
                     Some(medium) if self.done_m < to_m => self.go_on(medium, to_m),
                     _ => break,
                 }
                 continue;
             }
-            let piece = &mut self.pieces[view.next];
-            let (from_m, end_m) = (view.at_m.max(piece.from_m), to_m.min(piece.to_m));
+            let interval = &mut self.intervals[view.next];
+            let (from_m, end_m) = (view.at_m.max(interval.from_m), to_m.min(interval.to_m));
             if end_m > from_m {
-                let share = view.take(piece.blocks(from_m, end_m));
-                piece.seen += share;
+                let share = view.take(interval.blocks(from_m, end_m));
+                interval.seen += share;
                 view.depth_m += share * 0.5 * (from_m + end_m);
                 view.at_m = end_m;
                 if view.left <= 0.0 {
                     return;
                 }
             }
-            if piece.to_m > to_m {
+            if interval.to_m > to_m {
                 break;
             }
             view.next += 1;
@@ -80,9 +80,9 @@ impl Along {
         view.at_m = to_m;
     }
 
-    /// Finds a stretch more.
-    fn go_on(&mut self, medium: &Medium<'_>, to_m: f64) {
-        // Boxes are looked for only where the last stretch was empty.
+    /// Finds one more interval.
+    fn go_on(&mut self, medium: &DMedium<'_>, to_m: f64) {
+        // Boxes are looked for only where the last interval was empty.
         if self.empty {
             self.done_m = medium.slabs.first(&self.ray, self.done_m).max(self.done_m);
         }
@@ -90,14 +90,14 @@ impl Along {
             return;
         }
         let end_m = (self.done_m + medium.stride_m()).min(self.far_m());
-        self.empty = !medium.pieces(&self.ray, [self.done_m, end_m], &mut self.nearby, &mut self.pieces);
+        self.empty = !medium.intervals(&self.ray, [self.done_m, end_m], &mut self.nearby, &mut self.intervals);
         self.done_m = end_m;
     }
 }
 
 /// How far somebody has looked along a ray.
 #[derive(Clone, Copy, Debug)]
-pub struct View {
+pub struct ViewLeft {
     /// Share that is not blocked yet, times the part of the picture that is looked at.
     pub left: f64,
     /// Σ share × distance of all that was seen, m.
@@ -112,7 +112,7 @@ pub struct View {
 /// Share of a view that is given to what comes next.
 const LEAST: f64 = 5e-4;
 
-impl View {
+impl ViewLeft {
     /// Of a part of the picture.
     pub fn new(part: f64) -> Self {
         Self { left: part, depth_m: 0.0, at_m: 0.0, least: LEAST * part, next: 0 }

@@ -8,7 +8,7 @@ const PARALLEL: usize = 4096;
 
 /// A ray, with what its tests against boxes need.
 #[derive(Clone, Copy, Debug)]
-pub struct Ray {
+pub struct DRay {
     /// Where it starts, m.
     pub origin_m: DVec3,
     /// Unit vector.
@@ -18,7 +18,7 @@ pub struct Ray {
     across: [DVec3; 2],
 }
 
-impl Ray {
+impl DRay {
     /// From a point along a unit vector.
     pub fn new(origin_m: DVec3, direction: DVec3) -> Self {
         Self { origin_m, direction, inverse: direction.recip(), across: direction.any_orthonormal_pair().into() }
@@ -50,7 +50,7 @@ impl Bounds {
     }
 
     /// Where a ray is inside, between `near` and `far`; none where it is not.
-    pub fn span(&self, ray: &Ray, near: f64, far: f64) -> Option<[f64; 2]> {
+    pub fn span(&self, ray: &DRay, near: f64, far: f64) -> Option<[f64; 2]> {
         let (a, b) = ((self.low - ray.origin_m) * ray.inverse, (self.high - ray.origin_m) * ray.inverse);
         // min and max drop the NaN of 0 · ∞: a ray inside a side's plane stays possible.
         let enter = a.min(b).max_element().max(near);
@@ -100,12 +100,12 @@ impl Beam {
 
 /// The hierarchy.
 #[derive(Debug, Default)]
-pub struct Bvh {
+pub struct DBvh {
     nodes: Vec<Node>,
     items: Vec<u32>,
 }
 
-impl Bvh {
+impl DBvh {
     /// Over items with these boxes.
     pub fn new(bounds: &[Bounds]) -> Self {
         let mut items: Vec<Item> = bounds
@@ -121,7 +121,7 @@ impl Bvh {
     }
 
     /// Calls `visit` for every item whose box a ray meets between `near` and `far`; `visit` returns a new `far`.
-    pub fn visit(&self, ray: &Ray, near: f64, far: f64, mut visit: impl FnMut(u32, f64) -> f64) {
+    pub fn visit(&self, ray: &DRay, near: f64, far: f64, mut visit: impl FnMut(u32, f64) -> f64) {
         let meets = |bounds: &Bounds, far: f64| bounds.span(ray, near, far).is_some();
         self.descend(far, meets, |item, far| *far = visit(item, *far));
     }
@@ -156,7 +156,7 @@ impl Bvh {
     }
 
     /// Where, from `near` on, a ray first meets the box of a leaf; infinite where it meets none.
-    pub fn first(&self, ray: &Ray, near: f64) -> f64 {
+    pub fn first(&self, ray: &DRay, near: f64) -> f64 {
         let enter = |index: usize, far: f64| {
             self.nodes[index].bounds.span(ray, near, far).map_or(f64::INFINITY, |[enter, _]| enter)
         };

@@ -1,4 +1,4 @@
-//! Pieces of hair as round cones: unions of spheres whose centre and radius go linearly from end to end.
+//! Segments of hair as round cones: unions of spheres whose centre and radius go linearly from end to end.
 //!
 //! The sphere at s is met by the line through the origin along unit d where g(s) = r² − D² ≥ 0, D the distance of its centre
 //! from the line. With c(s) = from + s·axis, g(s) = γ + ed² + 2 s (β + ed·ad) + s² (α + ad²), where α = dr² − axis²,
@@ -6,7 +6,7 @@
 
 use crate::math::DVec3;
 
-/// Where the line through the origin along `direction` enters and leaves a round cone, and where along the piece its axis
+/// Where the line through the origin along `direction` enters and leaves a round cone, and where along the segment its axis
 /// passes the entry.
 ///
 /// The sphere at s is entered and left at the distances p(s) ∓ √g(s), p the centre's projection. g is a quadratic; the first

@@ -1,7 +1,7 @@
 //! Where a prism folds back along a ray: heights at which their distance neither grows nor shrinks.
 //!
 //! The distance is s(t) = n(t) / a(t), n a cubic and a a quadratic, so it turns where n′a − n a′, a quartic, changes its sign. In
-//! Bernstein's form over an interval, coefficients of one sign tell that there is no such place, which is nearly always so.
+//! Bernstein's form over an interval, coefficients of one sign tell that there is no such point, which is nearly always so.
 
 /// How often an interval is halved to tell its turns from each other; closer ones than that enclose nothing.
 const HALVINGS: u32 = 24;
@@ -36,7 +36,7 @@ pub fn turns(n: &[f64; 4], a: &[f64; 3], [low, high]: [f64; 2], mut visit: impl 
     isolate(b, [low, high], HALVINGS, &mut visit);
 }
 
-/// Calls `visit` with the places where a quartic in Bernstein's form changes its sign.
+/// Calls `visit` with the points where a quartic in Bernstein's form changes its sign.
 fn isolate(b: [f64; 5], [low, high]: [f64; 2], halvings: u32, visit: &mut impl FnMut(f64)) {
     if b.iter().all(|&b| b > 0.0) || b.iter().all(|&b| b < 0.0) {
         return;

@@ -1,8 +1,8 @@
-//! Guard hair as round cones in f64: every piece that is seen on a line, and where rays enter it.
+//! Guard hair as round cones in f64: every segment that is seen on a line, and where rays enter it.
 
-use super::bvh::{Bounds, Bvh, Ray};
+use super::bvh::{Bounds, DBvh, DRay};
 use super::cone;
-use super::lens::Pixel;
+use super::lens::PinholePixel;
 use super::line::Line;
 use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;
@@ -19,12 +19,12 @@ pub struct Crossing {
     /// The hair.
     pub strand: u32,
     /// Where along the hair, in its points.
-    pub knot: f64,
-    /// Which piece of it.
-    pub piece: u32,
+    pub along_strand: f64,
+    /// Which segment of it.
+    pub segment: u32,
 }
 
-/// A piece of hair that may be seen in a pixel.
+/// A segment of hair that may be seen in a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
     /// Between which columns, and which rows, it lies.
@@ -33,11 +33,11 @@ pub struct Candidate {
     pub near_m: f64,
     /// The hair.
     pub strand: u32,
-    /// Which piece of it.
-    pub piece: u32,
+    /// Which segment of it.
+    pub segment: u32,
 }
 
-/// Where on a line a piece of hair is seen.
+/// Where on a line a segment of hair is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Strip {
     /// From and to, in [0, 1].
@@ -46,51 +46,51 @@ pub struct Strip {
     pub near_m: f64,
     /// The hair.
     pub strand: u32,
-    /// Which piece of it.
-    pub piece: u32,
+    /// Which segment of it.
+    pub segment: u32,
 }
 
 /// All guard hair in one hierarchy.
 #[derive(Debug)]
-pub struct Guard<'a> {
+pub struct GuardCones<'a> {
     strands: &'a Strands,
     skin: &'a Mesh,
-    bvh: Bvh,
+    bvh: DBvh,
     /// Transparency of the tip over e^k − 1.
     transparency: f64,
 }
 
-impl<'a> Guard<'a> {
+impl<'a> GuardCones<'a> {
     /// Builds the hierarchy.
     pub fn new(strands: &'a Strands, skin: &'a Mesh) -> Self {
-        let pieces = strands.points_per_strand - 1;
-        let bounds: Vec<Bounds> = (0..strands.len() * pieces)
+        let segments = strands.points_per_strand - 1;
+        let bounds: Vec<Bounds> = (0..strands.len() * segments)
             .into_par_iter()
             .map(|item| {
-                let radius_m = f64::from(strands.root_radius_m[item / pieces]);
-                let at = item / pieces * (pieces + 1) + item % pieces;
+                let radius_m = f64::from(strands.root_radius_m[item / segments]);
+                let at = item / segments * (segments + 1) + item % segments;
                 Bounds::of(strands.points_m[at..=at + 1].iter().map(|p| p.as_dvec3()), radius_m)
             })
             .collect();
         let profile = &strands.profile;
         let transparency = f64::from(profile.tip_transparency) / libm::expm1(f64::from(profile.tip_exponent));
-        Self { strands, skin, bvh: Bvh::new(&bounds), transparency }
+        Self { strands, skin, bvh: DBvh::new(&bounds), transparency }
     }
 
-    /// The pieces that may be seen in a pixel, nearest first.
-    pub fn candidates(&self, pixel: &Pixel<'_>, out: &mut Vec<Candidate>) {
+    /// The segments that may be seen in a pixel, nearest first.
+    pub fn candidates(&self, pixel: &PinholePixel<'_>, out: &mut Vec<Candidate>) {
         out.clear();
-        let pieces = self.strands.points_per_strand as u32 - 1;
+        let segments = self.strands.points_per_strand as u32 - 1;
         self.bvh.visit_beam(&pixel.beam(), |item| {
-            let (strand, piece) = (item / pieces, item % pieces);
-            let (ends_m, radius_m) = self.ends(strand, piece);
+            let (strand, segment) = (item / segments, item % segments);
+            let (ends_m, radius_m) = self.ends(strand, segment);
             let [(near_m, a), (far_m, b)] = [0, 1].map(|i| pixel.bounds(ends_m[i], radius_m[i]));
             let across = [0, 1].map(|i| [a[i][0].min(b[i][0]), a[i][1].max(b[i][1])]);
             if across.iter().all(|&[from, to]| from < 1.0 && to > 0.0) {
-                out.push(Candidate { across, near_m: near_m.min(far_m), strand, piece });
+                out.push(Candidate { across, near_m: near_m.min(far_m), strand, segment });
             }
         });
-        let key = |c: &Candidate| (self.id(c.strand), c.piece);
+        let key = |c: &Candidate| (self.id(c.strand), c.segment);
         out.sort_unstable_by(|a, b| a.near_m.total_cmp(&b.near_m).then_with(|| key(a).cmp(&key(b))));
     }
 
@@ -99,12 +99,12 @@ impl<'a> Guard<'a> {
         out.clear();
         let (plane, ahead) = (line.base.cross(line.step).normalize(), (line.base + 0.5 * line.step).normalize());
         for candidate in some.iter().take_while(|candidate| candidate.near_m < far_m) {
-            let Candidate { across, strand, piece, .. } = *candidate;
+            let Candidate { across, strand, segment, .. } = *candidate;
             let [from, to] = across[usize::from(!column)];
             if at < from || at > to {
                 continue;
             }
-            let ([from_m, to_m], radius_m) = self.ends(strand, piece);
+            let ([from_m, to_m], radius_m) = self.ends(strand, segment);
             // The line's rays meet it where its axis is no farther from their plane than it is thick.
             let ends = [from_m, to_m].map(|end_m| end_m - line.eye_m);
             let widest_m = radius_m[0].max(radius_m[1]);
@@ -120,7 +120,7 @@ impl<'a> Guard<'a> {
             let Some([from, to]) = line.extent(from_m, to_m, radius_m) else { continue };
             let x = [from.max(0.0), to.min(1.0)];
             if x[0] < x[1] {
-                out.push(Strip { x, near_m, strand, piece });
+                out.push(Strip { x, near_m, strand, segment });
             }
         }
         // The nearer of two that begin as one goes first.
@@ -129,7 +129,7 @@ impl<'a> Guard<'a> {
 
     /// From end to end of a candidate, unit.
     pub fn way(&self, candidate: &Candidate) -> DVec3 {
-        let ([from_m, to_m], _) = self.ends(candidate.strand, candidate.piece);
+        let ([from_m, to_m], _) = self.ends(candidate.strand, candidate.segment);
         (to_m - from_m).normalize_or_zero()
     }
 
@@ -144,15 +144,15 @@ impl<'a> Guard<'a> {
     }
 
     /// Where along the hair, in [0, 1].
-    pub fn s(&self, knot: f64) -> f64 {
-        knot / (self.strands.points_per_strand - 1) as f64
+    pub fn s(&self, along_strand: f64) -> f64 {
+        along_strand / (self.strands.points_per_strand - 1) as f64
     }
 
     /// The hair's own opacity there: 1 − (e^{ks} − 1)/(e^k − 1)·transparency.
-    pub fn opacity(&self, knot: f64) -> f64 {
+    pub fn opacity(&self, along_strand: f64) -> f64 {
         let profile = &self.strands.profile;
         let k = f64::from(profile.tip_exponent);
-        1.0 - libm::expm1(k * self.s(knot)) * self.transparency
+        1.0 - libm::expm1(k * self.s(along_strand)) * self.transparency
     }
 
     /// Out of the skin at a hair's root, of no particular length.
@@ -162,28 +162,28 @@ impl<'a> Guard<'a> {
         (b - a).cross(c - a)
     }
 
-    /// Ends of a piece, m, and its radii there, m.
-    fn ends(&self, strand: u32, piece: u32) -> ([DVec3; 2], [f64; 2]) {
+    /// Ends of a segment, m, and its radii there, m.
+    fn ends(&self, strand: u32, segment: u32) -> ([DVec3; 2], [f64; 2]) {
         let points = self.strands.points_of_m(strand as usize);
         let last = (points.len() - 1) as f64;
         let root_radius_m = f64::from(self.strands.root_radius_m[strand as usize]);
         let taper = f64::from(self.strands.profile.taper);
-        let ends = [piece, piece + 1];
+        let ends = [segment, segment + 1];
         (
             ends.map(|i| points[i as usize].as_dvec3()),
             ends.map(|i| root_radius_m * (1.0 + (taper - 1.0) * f64::from(i) / last)),
         )
     }
 
-    /// Where a ray enters a piece.
-    pub fn cross(&self, ray: &Ray, strand: u32, piece: u32) -> Option<Crossing> {
-        let ([from_m, to_m], radius_m) = self.ends(strand, piece);
+    /// Where a ray enters a segment.
+    pub fn cross(&self, ray: &DRay, strand: u32, segment: u32) -> Option<Crossing> {
+        let ([from_m, to_m], radius_m) = self.ends(strand, segment);
         let (from, to) = (from_m - ray.origin_m, to_m - ray.origin_m);
         let [enter_m, leave_m, along] = cone::enter_and_leave(from, to, radius_m, ray.direction)?;
         // The root's round end lies under the skin: none is seen through the bare side of a scene.
-        if enter_m < 0.0 || piece == 0 && (ray.direction * enter_m - from).dot(self.up(strand)) < 0.0 {
+        if enter_m < 0.0 || segment == 0 && (ray.direction * enter_m - from).dot(self.up(strand)) < 0.0 {
             return None;
         }
-        Some(Crossing { enter_m, leave_m, strand, knot: f64::from(piece) + along, piece })
+        Some(Crossing { enter_m, leave_m, strand, along_strand: f64::from(segment) + along, segment })
     }
 }

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, PI};
 
 /// A kind of hair. Heights are shares of the shell's.
 #[derive(Clone, Debug)]
-pub struct Kind {
+pub struct DHairKind {
     /// Hairs per skin area where the fields say 1, 1/m².
     pub per_m2: f64,
     /// Height of the tallest.
@@ -33,7 +33,7 @@ pub const BRIM: f64 = 0.01;
 /// Heights at which guard hair's width is kept.
 const WIDTHS: usize = 1024;
 
-impl Kind {
+impl DHairKind {
     /// Of hair of one diameter: undercoat.
     pub fn undercoat(fibre: &Fibre, shell_height_m: f64) -> Self {
         let variation = f64::from(fibre.shape.length_variation);

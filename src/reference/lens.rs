@@ -6,19 +6,19 @@ use crate::data::camera::Camera;
 use crate::math::DVec3;
 use crate::math::hash::{combine, unit_f64};
 
-/// Parts of a line that take undercoat and skin from one place each.
+/// Parts of a line that take undercoat and skin from one point each.
 pub const PARTS: usize = 4;
 
 /// A pinhole camera in f64.
 #[derive(Debug)]
-pub struct Lens {
+pub struct Pinhole {
     eye_m: DVec3,
     axes: [DVec3; 3],
     middle: [f64; 2],
     focal_px: f64,
 }
 
-impl Lens {
+impl Pinhole {
     /// Of a camera.
     pub fn new(camera: &Camera, origin_m: DVec3, size: [usize; 2]) -> Self {
         let [right, up, back] = camera.axes();
@@ -34,19 +34,19 @@ impl Lens {
     }
 
     /// The pixel with this corner.
-    pub fn pixel(&self, corner: [f64; 2]) -> Pixel<'_> {
-        Pixel { lens: self, corner }
+    pub fn pixel(&self, corner: [f64; 2]) -> PinholePixel<'_> {
+        PinholePixel { lens: self, corner }
     }
 }
 
 /// A pixel, 1 wide and high.
 #[derive(Clone, Copy, Debug)]
-pub struct Pixel<'a> {
-    lens: &'a Lens,
+pub struct PinholePixel<'a> {
+    lens: &'a Pinhole,
     corner: [f64; 2],
 }
 
-impl Pixel<'_> {
+impl PinholePixel<'_> {
     fn direction(&self, x: f64, y: f64) -> DVec3 {
         self.lens.direction(self.corner[0] + x, self.corner[1] + y)
     }
@@ -86,11 +86,11 @@ impl Pixel<'_> {
     }
 }
 
-/// Where line `i` of `count` lies in a pixel, and at which places of it undercoat and skin are looked for.
+/// Where line `i` of `count` lies in a pixel, and at which points of it undercoat and skin are looked for.
 ///
-/// Two and two lie opposite each other about the middle of an even share, and so do the places on them: what changes
+/// Two and two lie opposite each other about the middle of an even share, and so do the points on them: what changes
 /// linearly over such a share is no error.
-pub fn place(i: usize, count: usize, key: u64) -> (f64, [f64; PARTS]) {
+pub fn point(i: usize, count: usize, key: u64) -> (f64, [f64; PARTS]) {
     let pair = i / 2;
     let key = combine(combine(key, !2), pair as u64);
     // The last of an odd number is alone.

@@ -1,9 +1,9 @@
-//! What lights give at a place, in f64, from the text of the glTF extension KHR_lights_punctual.
+//! What lights give at a point, in f64, from the text of the glTF extension KHR_lights_punctual.
 
 use crate::data::light::{Light, NEAREST_M, Point, Spot};
 use crate::math::DVec3;
 
-/// What arrives at a place.
+/// What arrives at a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Arriving {
     /// Vector to the light; of length 1, but for what rounding to f32 left.

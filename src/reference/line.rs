@@ -1,6 +1,6 @@
 //! A row or column of a pixel, as the eye sees it.
 
-use super::bvh::Ray;
+use super::bvh::DRay;
 use super::cone;
 use crate::math::DVec3;
 
@@ -17,8 +17,8 @@ pub struct Line {
 
 impl Line {
     /// The ray at `x`.
-    pub fn ray(&self, x: f64) -> Ray {
-        Ray::new(self.eye_m, (self.base + self.step * x).normalize())
+    pub fn ray(&self, x: f64) -> DRay {
+        DRay::new(self.eye_m, (self.base + self.step * x).normalize())
     }
 
     /// Where it begins and ceases to meet a round cone.

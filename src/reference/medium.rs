@@ -1,12 +1,12 @@
 //! What fills the shell, at every point exactly: undercoat with its crowding, and guard hair in the mean.
 
-use super::bvh::Ray;
+use super::bvh::DRay;
 use super::crowd::{Crowd, Ground, Points};
-use super::kind::{BRIM, Kind};
-use super::piece::{self, Piece};
-use super::point::{ShellPoint, ShellSpot, Spots};
+use super::interval::{self, MediumInterval};
+use super::kind::{BRIM, DHairKind};
+use super::point::{DShellPoint, DShellSpot, Spots};
 use super::shell::Slabs;
-use super::sight::Sight;
+use super::sight::PrismRay;
 use crate::fur::groom::clump::Nearby;
 use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::lanes::MOST;
@@ -14,7 +14,7 @@ use crate::math::{DVec3, Vec3};
 use crate::volume::scene::Scene;
 use crate::volume::shell::Shell;
 
-/// Optical depth of a piece of undercoat, where that is as dense as in the mean: its middle stands for all of it.
+/// Optical depth of a interval of undercoat, where that is as dense as in the mean: its middle stands for all of it.
 const MOST_STEP_DEPTH: f64 = 0.15;
 
 /// Optical depth from which on a shadow is followed in short steps, not to be followed too far.
@@ -33,7 +33,7 @@ const SLABS: [usize; 2] = [6, 3];
 
 /// The shell's content.
 #[derive(Debug)]
-pub struct Medium<'a> {
+pub struct DMedium<'a> {
     /// The shell's prisms.
     pub slabs: Slabs,
     /// What varies over the skin.
@@ -41,8 +41,8 @@ pub struct Medium<'a> {
     normals: &'a [Vec3],
     /// Normals of the rest pose, where the skin is in another: patterns keep to it.
     rest_normals: Option<Vec<Vec3>>,
-    undercoat: Option<Kind>,
-    guard: Option<Kind>,
+    undercoat: Option<DHairKind>,
+    guard: Option<DHairKind>,
     /// Twice the area of each triangle at rest, m².
     twice_area_m2: Vec<f64>,
     /// Length for which one point of undercoat stands, m.
@@ -58,7 +58,7 @@ pub enum Counted {
     Both,
 }
 
-impl<'a> Medium<'a> {
+impl<'a> DMedium<'a> {
     /// Of a scene; none where nothing grows.
     pub fn new(scene: &Scene<'a>, normals: &'a [Vec3], pattern: Option<Pattern>) -> Option<Self> {
         let fibre = scene.undercoat.or(scene.guard.map(|(_, fibre)| fibre))?;
@@ -70,8 +70,8 @@ impl<'a> Medium<'a> {
         let detail_m = f64::from(undercoat.detail_m()).min(SMOOTH * height_m);
         let rest_normals = scene.skin.rest_m.as_ref().map(|_| scene.skin.at_rest().smooth_normals());
         let shell = Shell::new(scene.skin, scene.fields, undercoat);
-        let undercoat = scene.undercoat.map(|fibre| Kind::undercoat(fibre, height_m));
-        let guard = scene.guard.map(|(_, fibre)| Kind::guard(fibre, height_m));
+        let undercoat = scene.undercoat.map(|fibre| DHairKind::undercoat(fibre, height_m));
+        let guard = scene.guard.map(|(_, fibre)| DHairKind::guard(fibre, height_m));
         let top = guard.as_ref().map_or(1.0, |kind| kind.top.max(1.0));
         let [below, beyond] = SLABS;
         let mut heights: Vec<f64> = (0..=below).map(|i| i as f64 / below as f64).collect();
@@ -88,41 +88,47 @@ impl<'a> Medium<'a> {
         Some(Self { slabs, shell, normals, rest_normals, undercoat, guard, twice_area_m2, detail_m })
     }
 
-    /// A field's value at a place.
-    pub fn scalar(&self, values: &[f32], place: &ShellPoint) -> f64 {
-        let v = self.shell.skin.triangles[place.triangle as usize].map(|v| f64::from(values[v as usize]));
-        v[0] * place.b.x + v[1] * place.b.y + v[2] * place.b.z
+    /// A field's value at a point.
+    pub fn scalar(&self, values: &[f32], point: &DShellPoint) -> f64 {
+        let v = self.shell.skin.triangles[point.triangle as usize].map(|v| f64::from(values[v as usize]));
+        v[0] * point.b.x + v[1] * point.b.y + v[2] * point.b.z
     }
 
-    /// A field's value at a place.
-    pub fn vector(&self, values: &[Vec3], place: &ShellPoint) -> DVec3 {
-        let v = self.shell.skin.triangles[place.triangle as usize].map(|v| values[v as usize].as_dvec3());
-        v[0] * place.b.x + v[1] * place.b.y + v[2] * place.b.z
+    /// A field's value at a point.
+    pub fn vector(&self, values: &[Vec3], point: &DShellPoint) -> DVec3 {
+        let v = self.shell.skin.triangles[point.triangle as usize].map(|v| values[v as usize].as_dvec3());
+        v[0] * point.b.x + v[1] * point.b.y + v[2] * point.b.z
     }
 
-    /// Mean direction of hair at a place, unit.
-    pub fn hair(&self, place: &ShellPoint) -> DVec3 {
-        self.slabs.up_m(place).normalize_or(DVec3::Y)
+    /// Mean direction of hair at a point, unit.
+    pub fn hair(&self, point: &DShellPoint) -> DVec3 {
+        self.slabs.up_m(point).normalize_or(DVec3::Y)
     }
 
     /// What undercoat blocks per length of a ray where it is as dense as in the mean, and what guard hair does, 1/m.
-    fn uncrowded(&self, spot: &ShellSpot, counted: Counted) -> [f64; 2] {
-        let ShellSpot { place, height_m, cosine, volume_m3 } = *spot;
+    fn uncrowded(&self, spot: &DShellSpot, counted: Counted) -> [f64; 2] {
+        let DShellSpot { point, height_m, cosine, volume_m3 } = *spot;
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
         let standing =
-            self.scalar(&self.shell.fields.density, &place) * self.twice_area_m2[place.triangle as usize] / volume_m3;
-        let of = |kind: &Option<Kind>| {
+            self.scalar(&self.shell.fields.density, &point) * self.twice_area_m2[point.triangle as usize] / volume_m3;
+        let of = |kind: &Option<DHairKind>| {
             let blocked =
-                kind.as_ref().map_or(0.0, |kind| kind.per_m2 * kind.extinction(place.t, height_m, sine, cosine));
+                kind.as_ref().map_or(0.0, |kind| kind.per_m2 * kind.extinction(point.t, height_m, sine, cosine));
             let blocked = blocked * standing;
             if blocked.is_finite() { blocked } else { 0.0 }
         };
         [of(&self.undercoat), if counted == Counted::Both { of(&self.guard) } else { 0.0 }]
     }
 
-    /// Puts undercoat along a ray between two distances after `out`, in short pieces; tells whether there is shell at all.
+    /// Puts undercoat along a ray between two distances after `out`, in short intervals; tells whether there is shell at all.
     /// `nearby` may have been used for points close by.
-    pub fn pieces(&self, ray: &Ray, [from_m, to_m]: [f64; 2], nearby: &mut Nearby, out: &mut Vec<Piece>) -> bool {
+    pub fn intervals(
+        &self,
+        ray: &DRay,
+        [from_m, to_m]: [f64; 2],
+        nearby: &mut Nearby,
+        out: &mut Vec<MediumInterval>,
+    ) -> bool {
         let Some(below) = self.below(Counted::Undercoat) else { return false };
         let (first, mut any) = (out.len(), false);
         self.slabs.visit(ray, [from_m, to_m], below, |sight, _, part, middle| {
@@ -131,17 +137,17 @@ impl<'a> Medium<'a> {
         });
         for some in out[first..].chunks_mut(MOST) {
             let mut points = Points::default();
-            some.iter().for_each(|piece| points.push(&self.ground(&piece.place)));
+            some.iter().for_each(|interval| points.push(&self.ground(&interval.point)));
             let crowding = points.crowding(&self.shell.undercoat, nearby);
-            some.iter_mut().zip(crowding).for_each(|(piece, crowding)| piece.depth *= f64::from(crowding));
+            some.iter_mut().zip(crowding).for_each(|(interval, crowding)| interval.depth *= f64::from(crowding));
         }
-        piece::put_in_order(out, first);
+        interval::put_in_order(out, first);
         any
     }
 
-    /// Cuts part of a slab into pieces short enough for their middles to stand for them, as deep as where undercoat is as dense
+    /// Cuts part of a slab into intervals short enough for their middles to stand for them, as deep as where undercoat is as dense
     /// as in the mean.
-    fn cut(&self, sight: &Sight, [from_m, to_m]: [f64; 2], middle: &Spots, out: &mut Vec<Piece>) {
+    fn cut(&self, sight: &PrismRay, [from_m, to_m]: [f64; 2], middle: &Spots, out: &mut Vec<MediumInterval>) {
         let bare = |spots: &Spots| -> [f64; 3] {
             spots.map(|spot| spot.map_or(0.0, |spot| self.uncrowded(&spot, Counted::Undercoat)[0]))
         };
@@ -153,13 +159,13 @@ impl<'a> Medium<'a> {
             let from_m = from_m + step_m * part as f64;
             let spots = if parts == 1.0 { *middle } else { sight.spots(from_m + 0.5 * step_m) };
             for (spot, bare) in spots.iter().zip(bare(&spots)) {
-                if let Some(ShellSpot { place, .. }) = *spot {
-                    out.push(Piece {
+                if let Some(DShellSpot { point, .. }) = *spot {
+                    out.push(MediumInterval {
                         from_m,
                         to_m: from_m + step_m,
                         depth: bare * step_m,
                         opacity: 0.0,
-                        place,
+                        point,
                         seen: 0.0,
                     });
                 }
@@ -168,12 +174,12 @@ impl<'a> Medium<'a> {
     }
 
     /// Optical depth of hair along a ray from `from_m` up to `to_m`, or as much of it as passes `enough`.
-    pub fn depth_along(&self, ray: &Ray, from_m: f64, to_m: f64, counted: Counted, enough: f64) -> f64 {
+    pub fn depth_along(&self, ray: &DRay, from_m: f64, to_m: f64, counted: Counted, enough: f64) -> f64 {
         let Some(below) = self.below(counted) else { return 0.0 };
         let (mut sum, mut at_m, mut empty) = (0.0, from_m, true);
         let mut nearby = Nearby::default();
         while sum < enough {
-            // Boxes are looked for only where the last stretch was empty.
+            // Boxes are looked for only where the last interval was empty.
             if empty {
                 at_m = self.slabs.first(ray, at_m).max(at_m);
             }
@@ -198,7 +204,7 @@ impl<'a> Medium<'a> {
     /// Optical depth of part of a slab, some of which may still wait in `crowd`.
     fn depth_of(
         &self,
-        sight: &Sight,
+        sight: &PrismRay,
         detailed: bool,
         [from_m, to_m]: [f64; 2],
         middle: &Spots,
@@ -212,7 +218,7 @@ impl<'a> Medium<'a> {
                 let [bare, guard] = self.uncrowded(spot, counted);
                 sum += guard * weight_m;
                 if bare > 0.0 {
-                    sum += crowd.push(&self.ground(&spot.place), bare * weight_m);
+                    sum += crowd.push(&self.ground(&spot.point), bare * weight_m);
                 }
             }
         };
@@ -233,14 +239,14 @@ impl<'a> Medium<'a> {
         sum
     }
 
-    /// What crowding over a place depends on.
-    fn ground(&self, place: &ShellPoint) -> Ground {
-        let foot_m = self.shell.skin.rest_corners_m(place.triangle as usize).map(|p| p.as_dvec3());
-        let root_m = foot_m[0] * place.b.x + foot_m[1] * place.b.y + foot_m[2] * place.b.z;
+    /// What crowding over a point depends on.
+    fn ground(&self, point: &DShellPoint) -> Ground {
+        let foot_m = self.shell.skin.rest_corners_m(point.triangle as usize).map(|p| p.as_dvec3());
+        let root_m = foot_m[0] * point.b.x + foot_m[1] * point.b.y + foot_m[2] * point.b.z;
         let normals = self.rest_normals.as_deref().unwrap_or(self.normals);
-        let normal = self.vector(normals, place).normalize_or(DVec3::Y);
-        let clump = self.scalar(&self.shell.fields.clump, place);
-        Ground { root_m: root_m.as_vec3(), normal: normal.as_vec3(), clump: clump as f32, t: place.t as f32 }
+        let normal = self.vector(normals, point).normalize_or(DVec3::Y);
+        let clump = self.scalar(&self.shell.fields.clump, point);
+        Ground { root_m: root_m.as_vec3(), normal: normal.as_vec3(), clump: clump as f32, t: point.t as f32 }
     }
 
     fn below(&self, counted: Counted) -> Option<f64> {

@@ -10,12 +10,12 @@ pub mod cone;
 pub mod crowd;
 pub mod fold;
 pub mod guard;
+pub mod interval;
 pub mod kind;
 pub mod lens;
 mod light;
 pub mod line;
 pub mod medium;
-pub mod piece;
 pub mod point;
 pub mod shade;
 pub mod shell;
@@ -30,14 +30,14 @@ use crate::error::Result;
 use crate::fur::undercoat::Pattern;
 use crate::math::DVec3;
 use crate::math::hash::{combine, unit_f64};
-use crate::stage::projection::View;
+use crate::stage::projection::Projection;
 use crate::volume::scene::{Lighting, Scene};
-use guard::Guard;
-use lens::Lens;
-use medium::Medium;
+use guard::GuardCones;
+use lens::Pinhole;
+use medium::DMedium;
 use rayon::prelude::*;
-use shade::{Look, Shader};
-use skin::Skin;
+use shade::{Appearance, Shader};
+use skin::SkinBvh;
 use sum::{Pick, Sum, luminance, variance};
 use trace::{Scratch, Seen, Tracer};
 
@@ -89,14 +89,14 @@ const LEAST: [f64; 2] = [2e-3, 0.01];
 /// Names what keeps the camera from looking anywhere, or a scattering parameter out of range.
 pub fn draw(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Film> {
     let origin_m = scene.skin.origin_m;
-    View::new(camera, origin_m, settings.size)?;
+    Projection::new(camera, origin_m, settings.size)?;
     let normals = scene.skin.smooth_normals();
-    let skin = Skin::new(scene.skin);
-    let guard = scene.guard.map(|(strands, _)| Guard::new(strands, scene.skin));
-    let medium = Medium::new(scene, &normals, settings.pattern);
+    let skin = SkinBvh::new(scene.skin);
+    let guard = scene.guard.map(|(strands, _)| GuardCones::new(strands, scene.skin));
+    let medium = DMedium::new(scene, &normals, settings.pattern);
     let tracer = Tracer { skin: &skin, guard: guard.as_ref(), medium: medium.as_ref() };
     let shader = Shader::new(scene, lighting, &tracer, &normals)?;
-    let reference = Reference { tracer, shader, lens: Lens::new(camera, origin_m, settings.size) };
+    let reference = Reference { tracer, shader, lens: Pinhole::new(camera, origin_m, settings.size) };
     let [width, height] = settings.size;
     let all = |key: u64, lines: &(dyn Fn(usize) -> usize + Sync)| -> Vec<Sum> {
         let pixel = |scratch: &mut Scratch, i: usize| {
@@ -124,7 +124,7 @@ pub fn draw(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &
 struct Reference<'a> {
     tracer: Tracer<'a>,
     shader: Shader<'a>,
-    lens: Lens,
+    lens: Pinhole,
 }
 
 impl Reference<'_> {
@@ -139,30 +139,30 @@ impl Reference<'_> {
         let mut sum = Sum::of(count);
         let mut bright = Vec::with_capacity(count);
         for i in 0..count {
-            let (at, places) = lens::place(i, count, key);
+            let (at, points) = lens::point(i, count, key);
             let key = combine(key, i as u64);
             let line = if column { pixel.column(at) } else { pixel.row(at) };
-            let before = luminance(sum.look.radiance);
-            let depth_m = self.tracer.line(&line, at, &places, combine(key, 1), scratch, |seen, ray, share| {
+            let before = luminance(sum.appearance.radiance);
+            let depth_m = self.tracer.line(&line, at, &points, combine(key, 1), scratch, |seen, ray, share| {
                 sum.cover(seen, share);
                 let kind = usize::from(matches!(seen, Seen::Undercoat(_)));
                 let weight = picks[kind].weight(share);
                 if weight > 0.0 {
-                    sum.add(&self.look(seen, ray.direction), weight);
+                    sum.add(&self.appearance(seen, ray.direction), weight);
                 }
             });
             sum.depth_m += depth_m;
-            bright.push(luminance(sum.look.radiance) - before);
+            bright.push(luminance(sum.appearance.radiance) - before);
         }
         sum.variance = variance(&bright);
         sum
     }
 
-    fn look(&self, seen: &Seen, direction: DVec3) -> Look {
+    fn appearance(&self, seen: &Seen, direction: DVec3) -> Appearance {
         match seen {
-            Seen::Guard { strand, knot } => self.shader.guard(*strand, *knot, direction),
-            Seen::Undercoat(place) => self.shader.undercoat(place, direction),
-            Seen::Skin(place) => self.shader.skin(place, direction),
+            Seen::Guard { strand, along_strand } => self.shader.guard(*strand, *along_strand, direction),
+            Seen::Undercoat(point) => self.shader.undercoat(point, direction),
+            Seen::Skin(point) => self.shader.skin(point, direction),
         }
     }
 }

@@ -2,9 +2,9 @@
 
 use crate::math::DVec3;
 
-/// A place in a prism.
+/// A point in a prism.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShellPoint {
+pub struct DShellPoint {
     /// Triangle of the skin.
     pub triangle: u32,
     /// Barycentric coordinates.
@@ -13,11 +13,11 @@ pub struct ShellPoint {
     pub t: f64,
 }
 
-/// A place and the shell around it.
+/// A point and the shell around it.
 #[derive(Clone, Copy, Debug)]
-pub struct ShellSpot {
-    /// The place.
-    pub place: ShellPoint,
+pub struct DShellSpot {
+    /// The point.
+    pub point: DShellPoint,
     /// From skin to t = 1 there, m.
     pub height_m: f64,
     /// Cosine between that way and the ray.
@@ -27,4 +27,4 @@ pub struct ShellSpot {
 }
 
 /// Places at one distance: one, or more where the prism folds over itself.
-pub type Spots = [Option<ShellSpot>; 3];
+pub type Spots = [Option<DShellSpot>; 3];

@@ -1,12 +1,12 @@
 //! What a point of hair or skin sends to the eye, in f64: the formulas of `crate::shade` and `crate::volume::scene`, with the
 //! key light's optical depth integrated anew for every point.
 
-use super::bvh::Ray;
-use super::guard::Guard;
+use super::bvh::DRay;
+use super::guard::GuardCones;
 use super::light::Arriving;
-use super::medium::{Counted, Medium};
-use super::point::ShellPoint;
-use super::skin::Skin;
+use super::medium::{Counted, DMedium};
+use super::point::DShellPoint;
+use super::skin::SkinBvh;
 use super::trace::Tracer;
 use crate::data::strands::Strands;
 use crate::error::Result;
@@ -21,16 +21,16 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// Optical depth beyond which no light is left.
 const DARK: f64 = 12.0;
 
-/// Heights of a piece of guard hair from which its shadow is followed.
-const HEIGHTS_PER_PIECE: usize = 3;
+/// Heights of a segment of guard hair from which its shadow is followed.
+const HEIGHTS_PER_SEGMENT: usize = 3;
 
 fn heights_of(strands: &Strands) -> usize {
-    (strands.points_per_strand - 1) * HEIGHTS_PER_PIECE + 1
+    (strands.points_per_strand - 1) * HEIGHTS_PER_SEGMENT + 1
 }
 
 /// What a point looks like.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Look {
+pub struct Appearance {
     /// Radiance, linear RGB.
     pub radiance: DVec3,
     /// Diffuse colour.
@@ -56,11 +56,11 @@ struct Site {
 pub struct Shader<'a> {
     scene: &'a Scene<'a>,
     lighting: &'a Lighting,
-    medium: Option<&'a Medium<'a>>,
-    guard: Option<&'a Guard<'a>>,
+    medium: Option<&'a DMedium<'a>>,
+    guard: Option<&'a GuardCones<'a>>,
     /// Optical depths towards the key light at heights of guard hairs, as bits of f32; NaN where not asked for yet.
     shadows: Vec<AtomicU32>,
-    skin: &'a Skin,
+    skin: &'a SkinBvh,
     lobes: Lobes<f64>,
     undercoat: KajiyaKay<f64>,
     normals: &'a [Vec3],
@@ -88,15 +88,15 @@ impl<'a> Shader<'a> {
         })
     }
 
-    /// Undercoat at a place, seen along `direction`.
-    pub fn undercoat(&self, place: &ShellPoint, direction: DVec3) -> Look {
-        let Some(medium) = self.medium else { return Look::default() };
+    /// Undercoat at a point, seen along `direction`.
+    pub fn undercoat(&self, point: &DShellPoint, direction: DVec3) -> Appearance {
+        let Some(medium) = self.medium else { return Appearance::default() };
         let fields = self.scene.fields;
-        let ramp = self.scene.undercoat.map_or(Vec3::ONE, |fibre| fibre.profile.ramp_at(place.t as f32));
-        let albedo = medium.vector(&fields.tint, place) * ramp.as_dvec3();
-        let hair = medium.hair(place);
-        let height_m = place.t * self.height_m(place);
-        let site = self.site(place, medium.slabs.position_m(place), height_m, hair, self.key_depth(place));
+        let ramp = self.scene.undercoat.map_or(Vec3::ONE, |fibre| fibre.profile.ramp_at(point.t as f32));
+        let albedo = medium.vector(&fields.tint, point) * ramp.as_dvec3();
+        let hair = medium.hair(point);
+        let height_m = point.t * self.height_m(point);
+        let site = self.site(point, medium.slabs.position_m(point), height_m, hair, self.key_depth(point));
         let diffuse = albedo * self.scene.scattering.undercoat_diffuse;
         let scattered = |angles: Angles<f64>| {
             let (tinted, plain) = self.undercoat.scatter(angles);
@@ -104,28 +104,28 @@ impl<'a> Shader<'a> {
         };
         let fill = self.lighting.fill_on_undercoat;
         let radiance = self.hair(&site, diffuse, hair, -direction, fill, scattered);
-        Look { radiance, albedo, tangent: hair, normal: DVec3::ZERO }
+        Appearance { radiance, albedo, tangent: hair, normal: DVec3::ZERO }
     }
 
-    /// A guard hair at a place along it, in its points.
-    pub fn guard(&self, strand: u32, knot: f64, direction: DVec3) -> Look {
-        let Some(guard) = self.guard else { return Look::default() };
+    /// A guard hair at a point along it, in its points.
+    pub fn guard(&self, strand: u32, along_strand: f64, direction: DVec3) -> Appearance {
+        let Some(guard) = self.guard else { return Appearance::default() };
         let strands = guard.strands();
         let foot = self.foot(strand);
         let points = strands.points_of_m(strand as usize);
         let last = points.len() - 1;
-        let piece = (knot as usize).min(last - 1);
-        let along = knot - piece as f64;
+        let segment = (along_strand as usize).min(last - 1);
+        let along = along_strand - segment as f64;
         let point = |i: usize| points[i.min(last)].as_dvec3();
         let lean = self.lean(&foot);
         // The hair's direction turns evenly from point to point.
-        let at_knot = |i: usize| (point(i + 1) - point(i.saturating_sub(1))).normalize_or(lean);
-        let tangent = at_knot(piece).lerp(at_knot(piece + 1), along).normalize_or(lean);
-        let height_m = self.height_over(&foot, lean, strand, knot);
-        let at_m = point(piece).lerp(point(piece + 1), along);
-        let site = self.site(&foot, at_m, height_m, lean, self.hair_depth(strand, knot));
+        let at_point = |i: usize| (point(i + 1) - point(i.saturating_sub(1))).normalize_or(lean);
+        let tangent = at_point(segment).lerp(at_point(segment + 1), along).normalize_or(lean);
+        let height_m = self.height_over(&foot, lean, strand, along_strand);
+        let at_m = point(segment).lerp(point(segment + 1), along);
+        let site = self.site(&foot, at_m, height_m, lean, self.hair_depth(strand, along_strand));
         let albedo =
-            strands.tint[strand as usize].as_dvec3() * strands.profile.ramp_at(guard.s(knot) as f32).as_dvec3();
+            strands.tint[strand as usize].as_dvec3() * strands.profile.ramp_at(guard.s(along_strand) as f32).as_dvec3();
         let p = &self.scene.scattering.guard;
         let share = albedo * (p.tt.albedo + p.trt.albedo + p.diffuse);
         let scattered = |angles: Angles<f64>| {
@@ -133,22 +133,22 @@ impl<'a> Shader<'a> {
             DVec3::splat(s.plain) + albedo * s.once + albedo * albedo * s.twice
         };
         let radiance = self.hair(&site, share, tangent, -direction, true, scattered);
-        Look { radiance, albedo, tangent, normal: DVec3::ZERO }
+        Appearance { radiance, albedo, tangent, normal: DVec3::ZERO }
     }
 
-    /// Skin at a place, seen along `direction`.
-    pub fn skin(&self, place: &ShellPoint, direction: DVec3) -> Look {
-        let outside = self.normal(place);
+    /// Skin at a point, seen along `direction`.
+    pub fn skin(&self, point: &DShellPoint, direction: DVec3) -> Appearance {
+        let outside = self.normal(point);
         let back = direction.dot(outside) > 0.0;
         let normal = if back { -outside } else { outside };
-        let lean = self.lean(place);
-        let albedo = self.vector(&self.scene.fields.tint, place) * self.scene.skin_factor.as_dvec3();
-        let at_m = self.vector(&self.scene.skin.positions_m, place);
+        let lean = self.lean(point);
+        let albedo = self.vector(&self.scene.fields.tint, point) * self.scene.skin_factor.as_dvec3();
+        let at_m = self.vector(&self.scene.skin.positions_m, point);
         // The back of a scene is bare.
         let site = if back {
             Site { at_m, normal, lean, above: 0.0, key_depth: 0.0 }
         } else {
-            self.site(place, at_m, 0.0, lean, self.key_depth(place))
+            self.site(point, at_m, 0.0, lean, self.key_depth(point))
         };
         let mut radiance = self.lighting.ambient.as_dvec3() * albedo * libm::exp(-f64::from(sky_depth(site.above)));
         for (i, light) in self.lighting.all().map(|light| Arriving::new(light, at_m)).enumerate() {
@@ -160,7 +160,7 @@ impl<'a> Shader<'a> {
                 radiance += light.irradiance * albedo * lit;
             }
         }
-        Look { radiance, albedo, tangent: DVec3::ZERO, normal }
+        Appearance { radiance, albedo, tangent: DVec3::ZERO, normal }
     }
 
     /// Ambient light and all lights on hair of direction `hair`.
@@ -198,35 +198,35 @@ impl<'a> Shader<'a> {
         f64::from(slant_depth(site.above, to_light, site.normal.as_vec3(), site.lean.as_vec3()))
     }
 
-    /// What stands around hair at `at_m`, over a place, `height_m` above the skin.
-    fn site(&self, place: &ShellPoint, at_m: DVec3, height_m: f64, lean: DVec3, key_depth: f64) -> Site {
+    /// What stands around hair at `at_m`, over a point, `height_m` above the skin.
+    fn site(&self, point: &DShellPoint, at_m: DVec3, height_m: f64, lean: DVec3, key_depth: f64) -> Site {
         let fields = self.scene.fields;
-        let (density, length) = (self.scalar(&fields.density, place) as f32, self.scalar(&fields.length, place) as f32);
+        let (density, length) = (self.scalar(&fields.density, point) as f32, self.scalar(&fields.length, point) as f32);
         let above = |fibre| Layer::new(fibre, density, length).above(height_m as f32);
         let own = self.scene.undercoat.map_or(0.0, above);
         let guard = self.scene.guard.map_or(0.0, |(_, fibre)| above(fibre));
-        Site { at_m, normal: self.normal(place), lean, above: own + guard, key_depth }
+        Site { at_m, normal: self.normal(point), lean, above: own + guard, key_depth }
     }
 
-    /// Optical depth of hair between a place and the key light, up to the first skin.
-    fn key_depth(&self, place: &ShellPoint) -> f64 {
+    /// Optical depth of hair between a point and the key light, up to the first skin.
+    fn key_depth(&self, point: &DShellPoint) -> f64 {
         let Some(medium) = self.medium else { return 0.0 };
-        let at_m = medium.slabs.position_m(place);
+        let at_m = medium.slabs.position_m(point);
         let Arriving { to_light, distance_m, .. } = Arriving::new(&self.lighting.key, at_m);
-        if terminator(to_light.as_vec3(), self.normal(place).as_vec3()) <= 0.0 {
+        if terminator(to_light.as_vec3(), self.normal(point).as_vec3()) <= 0.0 {
             return 0.0;
         }
-        let from_m = 1e-7 * self.height_m(place);
-        let ray = Ray::new(at_m, to_light.normalize());
+        let from_m = 1e-7 * self.height_m(point);
+        let ray = DRay::new(at_m, to_light.normalize());
         let to_m = self.skin.meet(&ray, from_m).map_or(f64::INFINITY, |(at_m, _)| at_m);
         medium.depth_along(&ray, from_m, to_m.min(distance_m), Counted::Both, DARK)
     }
 
     /// The same for a guard hair, which is shadowed as the column over its own root is: a cubic through four heights of it.
-    fn hair_depth(&self, strand: u32, knot: f64) -> f64 {
+    fn hair_depth(&self, strand: u32, along_strand: f64) -> f64 {
         let Some(guard) = self.guard else { return 0.0 };
         let heights = heights_of(guard.strands());
-        let at = knot * HEIGHTS_PER_PIECE as f64;
+        let at = along_strand * HEIGHTS_PER_SEGMENT as f64;
         let first = (at as usize).saturating_sub(1).min(heights - 4);
         let x = at - first as f64;
         let depth = |i: usize| {
@@ -236,11 +236,11 @@ impl<'a> Shader<'a> {
                 return f64::from(known);
             }
             let foot = self.foot(strand);
-            let knot = (first + i) as f64 / HEIGHTS_PER_PIECE as f64;
-            let height_m = self.height_over(&foot, self.lean(&foot), strand, knot);
+            let along_strand = (first + i) as f64 / HEIGHTS_PER_SEGMENT as f64;
+            let height_m = self.height_over(&foot, self.lean(&foot), strand, along_strand);
             let t = (height_m / self.height_m(&foot)).max(0.0);
             // Whoever comes first finds the same.
-            let found = self.key_depth(&ShellPoint { t, ..foot }) as f32;
+            let found = self.key_depth(&DShellPoint { t, ..foot }) as f32;
             cell.store(found.to_bits(), Ordering::Relaxed);
             f64::from(found)
         };
@@ -254,42 +254,42 @@ impl<'a> Shader<'a> {
     }
 
     /// Where a guard hair grows.
-    fn foot(&self, strand: u32) -> ShellPoint {
+    fn foot(&self, strand: u32) -> DShellPoint {
         let root = self.guard.map_or_else(Default::default, |guard| guard.strands().roots[strand as usize]);
         let [u, v] = root.barycentric.map(f64::from);
-        ShellPoint { triangle: root.triangle, b: DVec3::new(u, v, 1.0 - u - v), t: 0.0 }
+        DShellPoint { triangle: root.triangle, b: DVec3::new(u, v, 1.0 - u - v), t: 0.0 }
     }
 
-    /// Height of a guard hair over its foot at a place along it, m along the lean.
-    fn height_over(&self, foot: &ShellPoint, lean: DVec3, strand: u32, knot: f64) -> f64 {
+    /// Height of a guard hair over its foot at a point along it, m along the lean.
+    fn height_over(&self, foot: &DShellPoint, lean: DVec3, strand: u32, along_strand: f64) -> f64 {
         let Some(guard) = self.guard else { return 0.0 };
         let points = guard.strands().points_of_m(strand as usize);
-        let piece = (knot as usize).min(points.len() - 2);
-        let at = points[piece].as_dvec3().lerp(points[piece + 1].as_dvec3(), knot - piece as f64);
+        let segment = (along_strand as usize).min(points.len() - 2);
+        let at = points[segment].as_dvec3().lerp(points[segment + 1].as_dvec3(), along_strand - segment as f64);
         let normal = self.normal(foot);
         (at - points[0].as_dvec3()).dot(normal) / lean.dot(normal).max(0.05)
     }
 
-    fn lean(&self, place: &ShellPoint) -> DVec3 {
-        self.vector(&self.scene.fields.lean, place).normalize_or(self.normal(place))
+    fn lean(&self, point: &DShellPoint) -> DVec3 {
+        self.vector(&self.scene.fields.lean, point).normalize_or(self.normal(point))
     }
 
-    /// Height of the shell at a place, m along the lean.
-    fn height_m(&self, place: &ShellPoint) -> f64 {
-        self.medium.map_or(1.0, |medium| medium.slabs.up_m(place).length())
+    /// Height of the shell at a point, m along the lean.
+    fn height_m(&self, point: &DShellPoint) -> f64 {
+        self.medium.map_or(1.0, |medium| medium.slabs.up_m(point).length())
     }
 
-    fn normal(&self, place: &ShellPoint) -> DVec3 {
-        self.vector(self.normals, place).normalize_or(DVec3::Y)
+    fn normal(&self, point: &DShellPoint) -> DVec3 {
+        self.vector(self.normals, point).normalize_or(DVec3::Y)
     }
 
-    fn scalar(&self, values: &[f32], place: &ShellPoint) -> f64 {
-        let v = self.scene.skin.triangles[place.triangle as usize].map(|v| f64::from(values[v as usize]));
-        v[0] * place.b.x + v[1] * place.b.y + v[2] * place.b.z
+    fn scalar(&self, values: &[f32], point: &DShellPoint) -> f64 {
+        let v = self.scene.skin.triangles[point.triangle as usize].map(|v| f64::from(values[v as usize]));
+        v[0] * point.b.x + v[1] * point.b.y + v[2] * point.b.z
     }
 
-    fn vector(&self, values: &[Vec3], place: &ShellPoint) -> DVec3 {
-        let v = self.scene.skin.triangles[place.triangle as usize].map(|v| values[v as usize].as_dvec3());
-        v[0] * place.b.x + v[1] * place.b.y + v[2] * place.b.z
+    fn vector(&self, values: &[Vec3], point: &DShellPoint) -> DVec3 {
+        let v = self.scene.skin.triangles[point.triangle as usize].map(|v| values[v as usize].as_dvec3());
+        v[0] * point.b.x + v[1] * point.b.y + v[2] * point.b.z
     }
 }

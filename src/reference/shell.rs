@@ -1,8 +1,8 @@
-//! The prismatic shell in f64: slabs of prisms in a hierarchy. A place is x = Σ bᵢ (pᵢ + t oᵢ).
+//! The prismatic shell in f64: slabs of prisms in a hierarchy. A point is x = Σ bᵢ (pᵢ + t oᵢ).
 
-use super::bvh::{Bounds, Bvh, Ray};
-use super::point::{ShellPoint, Spots};
-use super::sight::Sight;
+use super::bvh::{Bounds, DBvh, DRay};
+use super::point::{DShellPoint, Spots};
+use super::sight::PrismRay;
 use crate::math::DVec3;
 use crate::volume::shell::Shell;
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ pub struct Slabs {
     /// Heights between slabs.
     heights: Vec<f64>,
     bounds: Vec<Bounds>,
-    bvh: Bvh,
+    bvh: DBvh,
 }
 
 impl Slabs {
@@ -27,7 +27,7 @@ impl Slabs {
                 (shell.skin.corners_m(t).map(|p| p.as_dvec3()), offsets_m)
             })
             .collect();
-        let mut slabs = Self { corners, heights, bounds: Vec::new(), bvh: Bvh::default() };
+        let mut slabs = Self { corners, heights, bounds: Vec::new(), bvh: DBvh::default() };
         let layers = slabs.heights.len() - 1;
         let bounds: Vec<Bounds> = (0..slabs.corners.len() * layers)
             .into_par_iter()
@@ -37,7 +37,7 @@ impl Slabs {
                 Bounds::of(ends.into_iter().flat_map(|t| (0..3).map(move |c| feet[c] + offsets[c] * t)), 0.0)
             })
             .collect();
-        slabs.bvh = Bvh::new(&bounds);
+        slabs.bvh = DBvh::new(&bounds);
         slabs.bounds = bounds;
         slabs
     }
@@ -49,38 +49,38 @@ impl Slabs {
         (slab / layers, [self.heights[layer], self.heights[layer + 1]])
     }
 
-    /// Position of a place, m.
-    pub fn position_m(&self, place: &ShellPoint) -> DVec3 {
-        let (feet, offsets) = &self.corners[place.triangle as usize];
-        (0..3).map(|i| (feet[i] + offsets[i] * place.t) * place.b[i]).sum()
+    /// Position of a point, m.
+    pub fn position_m(&self, point: &DShellPoint) -> DVec3 {
+        let (feet, offsets) = &self.corners[point.triangle as usize];
+        (0..3).map(|i| (feet[i] + offsets[i] * point.t) * point.b[i]).sum()
     }
 
-    /// The way from skin to t = 1 at a place, m.
-    pub fn up_m(&self, place: &ShellPoint) -> DVec3 {
-        let (_, offsets) = &self.corners[place.triangle as usize];
-        offsets[0] * place.b.x + offsets[1] * place.b.y + offsets[2] * place.b.z
+    /// The way from skin to t = 1 at a point, m.
+    pub fn up_m(&self, point: &DShellPoint) -> DVec3 {
+        let (_, offsets) = &self.corners[point.triangle as usize];
+        offsets[0] * point.b.x + offsets[1] * point.b.y + offsets[2] * point.b.z
     }
 
     /// Where, from `near_m` on, a ray first comes close to the shell.
-    pub fn first(&self, ray: &Ray, near_m: f64) -> f64 {
+    pub fn first(&self, ray: &DRay, near_m: f64) -> f64 {
         self.bvh.first(ray, near_m)
     }
 
     /// Calls `visit` with every part of a ray between two distances that lies in a slab which begins below height `below`: the
-    /// slab as the ray passes it, the slab, the part, and the places at its middle.
+    /// slab as the ray passes it, the slab, the part, and the points at its middle.
     pub fn visit(
         &self,
-        ray: &Ray,
+        ray: &DRay,
         [from_m, to_m]: [f64; 2],
         below: f64,
-        mut visit: impl FnMut(&Sight, u32, [f64; 2], &Spots),
+        mut visit: impl FnMut(&PrismRay, u32, [f64; 2], &Spots),
     ) {
         self.bvh.visit(ray, from_m, to_m, |slab, far| {
             let (triangle, ends) = self.slab(slab);
             if ends[0] < below
                 && let Some(inside) = self.bounds[slab as usize].span(ray, from_m, to_m)
             {
-                let sight = Sight::new(ray, triangle, &self.corners[triangle as usize], ends);
+                let sight = PrismRay::new(ray, triangle, &self.corners[triangle as usize], ends);
                 sight.spans([from_m, to_m], inside, |part, middle| visit(&sight, slab, part, middle));
             }
             far

@@ -5,14 +5,14 @@
 //! s = Σ zᵢ cᵢ / Σ c. So the heights at a distance s are roots of the cubic Σ zᵢ cᵢ − s Σ c, and the ray passes the side opposite to corner i at a
 //! root of the quadratic cᵢ. Where it folds back along the ray, s turns (`fold`).
 
-use super::bvh::Ray;
+use super::bvh::DRay;
 use super::fold;
-use super::point::{ShellPoint, ShellSpot, Spots};
+use super::point::{DShellPoint, DShellSpot, Spots};
 use crate::math::{DVec2, DVec3};
 
 /// A slab of a prism along a ray.
 #[derive(Clone, Copy, Debug)]
-pub struct Sight {
+pub struct PrismRay {
     triangle: u32,
     ends: [f64; 2],
     feet_m: [DVec3; 3],
@@ -23,9 +23,9 @@ pub struct Sight {
     depth: [f64; 4],
 }
 
-impl Sight {
+impl PrismRay {
     /// Of the slab between two heights over a triangle, whose corners stand there with these offsets.
-    pub fn new(ray: &Ray, triangle: u32, (feet, offsets): &([DVec3; 3], [DVec3; 3]), ends: [f64; 2]) -> Self {
+    pub fn new(ray: &DRay, triangle: u32, (feet, offsets): &([DVec3; 3], [DVec3; 3]), ends: [f64; 2]) -> Self {
         let p = feet.map(|foot_m| ray.see(foot_m - ray.origin_m));
         let o = offsets.map(|offset_m| ray.see(offset_m));
         let cross = |a: DVec3, b: DVec3| a.x * b.y - a.y * b.x;
@@ -44,7 +44,7 @@ impl Sight {
         Self { triangle, ends, feet_m: p, offsets_m: o, shares, area, depth }
     }
 
-    /// Parts of the ray between two distances that lie in the slab, with the places at their middles. The slab lies between
+    /// Parts of the ray between two distances that lie in the slab, with the points at their middles. The slab lies between
     /// the distances `inside`.
     pub fn spans(&self, [near_m, far_m]: [f64; 2], inside: [f64; 2], mut visit: impl FnMut([f64; 2], &Spots)) {
         // Distances at which the ray passes the slab's faces.
@@ -102,14 +102,14 @@ impl Sight {
         }
     }
 
-    /// The places that lie at a distance.
+    /// The points that lie at a distance.
     pub fn spots(&self, at_m: f64) -> Spots {
         let Self { area, depth, ends, .. } = self;
         let cubic = [depth[0] - at_m * area[0], depth[1] - at_m * area[1], depth[2] - at_m * area[2], depth[3]];
         roots(cubic, *ends).map(|t| t.and_then(|t| self.spot(t, at_m)))
     }
 
-    fn spot(&self, t: f64, at_m: f64) -> Option<ShellSpot> {
+    fn spot(&self, t: f64, at_m: f64) -> Option<DShellSpot> {
         let (p, o) = (&self.feet_m, &self.offsets_m);
         let mut b = DVec3::from_array(self.shares.map(|share| square(&share, t)));
         let area = b.element_sum();
@@ -128,8 +128,8 @@ impl Sight {
         }
         let up_m = o[0] * b.x + o[1] * b.y + o[2] * b.z;
         let height_m = up_m.length();
-        let place = ShellPoint { triangle: self.triangle, b, t };
-        Some(ShellSpot { place, height_m, cosine: up_m.z / height_m, volume_m3: normal.dot(up_m).abs() })
+        let point = DShellPoint { triangle: self.triangle, b, t };
+        Some(DShellSpot { point, height_m, cosine: up_m.z / height_m, volume_m3: normal.dot(up_m).abs() })
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a pixel's lines tell, put together.
 
-use super::shade::Look;
+use super::shade::Appearance;
 use super::trace::Seen;
 use crate::data::film::Film;
 use crate::math::DVec3;
@@ -17,7 +17,7 @@ pub struct Sum {
     /// Of the mean luminance, estimated.
     pub variance: f64,
     /// Σ of what is seen.
-    pub look: Look,
+    pub appearance: Appearance,
     /// Σ share × distance, m.
     pub depth_m: f64,
     guard: f64,
@@ -32,11 +32,11 @@ impl Sum {
     }
 
     /// Adds what is seen with a share of a line.
-    pub fn add(&mut self, look: &Look, share: f64) {
-        self.look.radiance += look.radiance * share;
-        self.look.albedo += look.albedo * share;
-        self.look.tangent += look.tangent * share;
-        self.look.normal += look.normal * share;
+    pub fn add(&mut self, appearance: &Appearance, share: f64) {
+        self.appearance.radiance += appearance.radiance * share;
+        self.appearance.albedo += appearance.albedo * share;
+        self.appearance.tangent += appearance.tangent * share;
+        self.appearance.normal += appearance.normal * share;
     }
 
     /// Takes note of what is seen.
@@ -50,7 +50,8 @@ impl Sum {
 
     /// Standard error of the pixel's lightness (CIE L*, 0 to 100), which goes with the cube root of luminance.
     pub fn lightness_error(&self) -> f64 {
-        let slope = 116.0 / 3.0 * libm::pow(luminance(self.look.radiance) / self.lines.max(1.0) + 1e-3, -2.0 / 3.0);
+        let slope =
+            116.0 / 3.0 * libm::pow(luminance(self.appearance.radiance) / self.lines.max(1.0) + 1e-3, -2.0 / 3.0);
         self.variance.sqrt() * slope
     }
 
@@ -60,10 +61,10 @@ impl Sum {
         let weights = if other.lines > 0.0 { [self.lines, other.lines] } else { [1.0, 0.0] };
         let join = |a: &mut f64, b: f64| *a = weights[0] * *a + weights[1] * b;
         let join_all = |a: &mut DVec3, b: DVec3| *a = *a * weights[0] + b * weights[1];
-        join_all(&mut self.look.radiance, other.look.radiance);
-        join_all(&mut self.look.albedo, other.look.albedo);
-        join_all(&mut self.look.tangent, other.look.tangent);
-        join_all(&mut self.look.normal, other.look.normal);
+        join_all(&mut self.appearance.radiance, other.appearance.radiance);
+        join_all(&mut self.appearance.albedo, other.appearance.albedo);
+        join_all(&mut self.appearance.tangent, other.appearance.tangent);
+        join_all(&mut self.appearance.normal, other.appearance.normal);
         join(&mut self.depth_m, other.depth_m);
         join(&mut self.guard, other.guard);
         join(&mut self.undercoat, other.undercoat);
@@ -76,10 +77,10 @@ impl Sum {
         let met = self.guard + self.undercoat + self.skin;
         let part = 1.0 / self.lines.max(1.0);
         let mean = |v: DVec3| (v * part).as_vec3();
-        film.radiance[i] = mean(self.look.radiance);
-        film.albedo[i] = mean(self.look.albedo);
-        film.tangent[i] = mean(self.look.tangent);
-        film.normal[i] = mean(self.look.normal);
+        film.radiance[i] = mean(self.appearance.radiance);
+        film.albedo[i] = mean(self.appearance.albedo);
+        film.tangent[i] = mean(self.appearance.tangent);
+        film.normal[i] = mean(self.appearance.normal);
         film.depth_m[i] = if met > 0.0 { (self.depth_m / met) as f32 } else { 0.0 };
         film.alpha[i] = (met * part) as f32;
         film.guard[i] = (self.guard * part) as f32;

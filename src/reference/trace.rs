@@ -1,16 +1,16 @@
 //! One line of a pixel: what is seen on it, hair and undercoat in exact order.
 //!
-//! The line is cut where hairs begin and cease to be seen; each part is looked through at a random place of it, so that a cut
-//! too few adds noise and no bias. Undercoat and skin change slowly: a part of the line takes them from one random place.
+//! The line is cut where hairs begin and cease to be seen; each part is looked through at a random point of it, so that a cut
+//! too few adds noise and no bias. Undercoat and skin change slowly: a part of the line takes them from one random point.
 
-use super::along::{Along, View};
-use super::bvh::Ray;
-use super::guard::{Candidate, Crossing, Guard, Strip};
-use super::lens::{PARTS, Pixel};
+use super::along::{Along, ViewLeft};
+use super::bvh::DRay;
+use super::guard::{Candidate, Crossing, GuardCones, Strip};
+use super::lens::{PARTS, PinholePixel};
 use super::line::Line;
-use super::medium::Medium;
-use super::point::ShellPoint;
-use super::skin::Skin;
+use super::medium::DMedium;
+use super::point::DShellPoint;
+use super::skin::SkinBvh;
 use crate::math::hash::Stream;
 
 /// What is seen.
@@ -21,30 +21,30 @@ pub enum Seen {
         /// Which.
         strand: u32,
         /// Where along it, in its points.
-        knot: f64,
+        along_strand: f64,
     },
     /// Undercoat.
-    Undercoat(ShellPoint),
+    Undercoat(DShellPoint),
     /// Skin.
-    Skin(ShellPoint),
+    Skin(DShellPoint),
 }
 
 /// What rays may meet.
 #[derive(Debug)]
 pub struct Tracer<'a> {
     /// Skin.
-    pub skin: &'a Skin,
+    pub skin: &'a SkinBvh,
     /// Guard hair.
-    pub guard: Option<&'a Guard<'a>>,
+    pub guard: Option<&'a GuardCones<'a>>,
     /// Undercoat.
-    pub medium: Option<&'a Medium<'a>>,
+    pub medium: Option<&'a DMedium<'a>>,
 }
 
 /// How much of a strip has been seen, and that times where along its hair.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally {
     share: f64,
-    knots: f64,
+    alongs: f64,
 }
 
 /// Lists that a thread keeps for their memory.
@@ -58,7 +58,7 @@ pub struct Scratch {
     waiting: Vec<(Crossing, u32)>,
     passed: Vec<Crossing>,
     /// All that is seen on a line, along which ray, and which share of the line it takes.
-    seen: Vec<(Seen, Ray, f64)>,
+    seen: Vec<(Seen, DRay, f64)>,
     /// How far the line was looked along, m: infinite where part of it passes all.
     line_reached_m: f64,
     /// Of a pixel: its hair, nearest first, whether lines are columns, and how far they were looked along so far, m.
@@ -76,7 +76,7 @@ const BEYOND: f64 = 0.1;
 impl Tracer<'_> {
     /// Begins with a pixel; tells whether hair lies rather along its rows than along its columns, so that columns cut it
     /// shorter.
-    pub fn begin(&self, pixel: &Pixel<'_>, scratch: &mut Scratch) -> bool {
+    pub fn begin(&self, pixel: &PinholePixel<'_>, scratch: &mut Scratch) -> bool {
         (scratch.reached_m, scratch.column) = (None, false);
         let Some(guard) = self.guard else { return false };
         guard.candidates(pixel, &mut scratch.candidates);
@@ -91,18 +91,18 @@ impl Tracer<'_> {
     }
 
     /// Calls `visit` with all that is seen on the line at `at` of the pixel that was begun with, the ray that it is seen along
-    /// and which share of the line it takes; gives Σ share × distance. Undercoat and skin are looked for at these places of
+    /// and which share of the line it takes; gives Σ share × distance. Undercoat and skin are looked for at these points of
     /// it, one in each part.
     pub fn line(
         &self,
         line: &Line,
         at: f64,
-        places: &[f64; PARTS],
+        points: &[f64; PARTS],
         key: u64,
         scratch: &mut Scratch,
-        mut visit: impl FnMut(&Seen, &Ray, f64),
+        mut visit: impl FnMut(&Seen, &DRay, f64),
     ) -> f64 {
-        let parts = places.map(|x| Along::new(line.ray(x), self.skin));
+        let parts = points.map(|x| Along::new(line.ray(x), self.skin));
         // Hair is looked for somewhat beyond where earlier lines of the pixel ended; seldom, that is too near.
         let nearest_m = scratch.candidates.first().map_or(0.0, |candidate| candidate.near_m);
         let far_m = scratch.reached_m.map_or(f64::INFINITY, |reached_m| reached_m + BEYOND * (reached_m - nearest_m));
@@ -164,13 +164,13 @@ impl Tracer<'_> {
                         if strip.x[1] < to && counts(strip) {
                             to = strip.x[1];
                         }
-                        let place = active.partition_point(|&a| strips[a as usize].near_m <= strip.near_m);
-                        active.insert(place, next as u32);
+                        let point = active.partition_point(|&a| strips[a as usize].near_m <= strip.near_m);
+                        active.insert(point, next as u32);
                     }
                     next += 1;
                 }
                 let ray = line.ray(at + (to - at) * unit());
-                let view = self.look(&ray, part, to - at, scratch);
+                let view = self.see(&ray, part, to - at, scratch);
                 opaque_m = if view.left > 0.0 { f64::INFINITY } else { view.at_m + part.farther_m(&ray) };
                 scratch.line_reached_m = scratch.line_reached_m.max(opaque_m);
                 depth_m += view.depth_m;
@@ -179,23 +179,23 @@ impl Tracer<'_> {
             let Scratch { strips, tallies, seen, .. } = &mut *scratch;
             // Hairs in order of x.
             for (tally, strip) in tallies.iter_mut().zip(strips).filter(|(tally, _)| tally.share > 0.0) {
-                let knot = tally.knots / tally.share;
-                seen.push((Seen::Guard { strand: strip.strand, knot }, part.ray, tally.share));
+                let along_strand = tally.alongs / tally.share;
+                seen.push((Seen::Guard { strand: strip.strand, along_strand }, part.ray, tally.share));
                 *tally = Tally::default();
             }
-            for piece in part.pieces.iter().filter(|piece| piece.seen > 0.0) {
-                seen.push((Seen::Undercoat(piece.place), part.ray, piece.seen));
+            for interval in part.intervals.iter().filter(|interval| interval.seen > 0.0) {
+                seen.push((Seen::Undercoat(interval.point), part.ray, interval.seen));
             }
-            if let Some((_, place)) = part.skin.filter(|_| part.skin_seen > 0.0) {
-                seen.push((Seen::Skin(place), part.ray, part.skin_seen));
+            if let Some((_, point)) = part.skin.filter(|_| part.skin_seen > 0.0) {
+                seen.push((Seen::Skin(point), part.ray, part.skin_seen));
             }
         }
         depth_m
     }
 
     /// Looks along a ray through the active strips and a part's undercoat, and adds up what is seen.
-    fn look(&self, ray: &Ray, part: &mut Along, width: f64, scratch: &mut Scratch) -> View {
-        let mut view = View::new(width);
+    fn see(&self, ray: &DRay, part: &mut Along, width: f64, scratch: &mut Scratch) -> ViewLeft {
+        let mut view = ViewLeft::new(width);
         let Scratch { strips, tallies, active, waiting, passed, .. } = scratch;
         waiting.clear();
         passed.clear();
@@ -203,12 +203,12 @@ impl Tracer<'_> {
         let farther_m = part.farther_m(ray);
         let far_m = part.far_m() + farther_m;
         if let Some(guard) = self.guard {
-            let mut pass = |view: &mut View, passed: &mut Vec<Crossing>, (crossing, strip): (Crossing, u32)| {
+            let mut pass = |view: &mut ViewLeft, passed: &mut Vec<Crossing>, (crossing, strip): (Crossing, u32)| {
                 part.see(self.medium, view, crossing.enter_m - farther_m);
-                let share = view.take(guard.opacity(crossing.knot));
+                let share = view.take(guard.opacity(crossing.along_strand));
                 let tally = &mut tallies[strip as usize];
                 tally.share += share;
-                tally.knots += share * crossing.knot;
+                tally.alongs += share * crossing.along_strand;
                 view.depth_m += share * crossing.enter_m;
                 passed.push(crossing);
             };
@@ -220,14 +220,14 @@ impl Tracer<'_> {
                 if view.left <= 0.0 {
                     break;
                 }
-                let Some(crossing) = guard.cross(ray, strip.strand, strip.piece) else { continue };
+                let Some(crossing) = guard.cross(ray, strip.strand, strip.segment) else { continue };
                 if crossing.enter_m >= far_m {
                     continue;
                 }
-                // Where two pieces meet, a ray may be in both: that is one entry into one hair.
+                // Where two intervals meet, a ray may be in both: that is one entry into one hair.
                 let same = |other: &Crossing| {
                     other.strand == crossing.strand
-                        && other.piece.abs_diff(crossing.piece) == 1
+                        && other.segment.abs_diff(crossing.segment) == 1
                         && crossing.enter_m <= other.leave_m
                         && other.enter_m <= crossing.leave_m
                 };
@@ -241,8 +241,8 @@ impl Tracer<'_> {
                     waiting.remove(other);
                 }
                 let key = |c: &Crossing| (c.enter_m, guard.id(c.strand));
-                let place = waiting.partition_point(|(other, _)| key(other) > key(&crossing));
-                waiting.insert(place, (crossing, index));
+                let point = waiting.partition_point(|(other, _)| key(other) > key(&crossing));
+                waiting.insert(point, (crossing, index));
             }
             while view.left > 0.0 {
                 let Some(first) = waiting.pop() else { break };

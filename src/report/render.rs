@@ -7,7 +7,7 @@ use crate::data::film::Film;
 use crate::error::Result;
 use crate::hybrid::resolve::Blending;
 use crate::hybrid::{Picture, Settings};
-use crate::metrics::compare::{Light, compare};
+use crate::metrics::compare::{LinearImage, compare};
 use crate::metrics::timing::SCHEMA_VERSION;
 use crate::volume::march::Stepping;
 use crate::volume::march::content::Resolution;
@@ -59,7 +59,7 @@ pub struct Options {
     /// Runs per point, at least 1; the quickest counts.
     pub repeats: u32,
     /// What to measure against and what it is called, of the same size and view; else the finest setting is.
-    pub reference: Option<(String, Light)>,
+    pub reference: Option<(String, LinearImage)>,
 }
 
 /// A way to draw: what was changed from which defaults, to what.
@@ -101,7 +101,7 @@ pub fn sweep(grown: &Grown, options: &Options, progress: &mut dyn FnMut(&str)) -
         None => {
             progress("yardstick");
             let finest = draw(&finest(options.size))?;
-            drawn = Light::from(&finest.film);
+            drawn = LinearImage::from(&finest.film);
             (&drawn, Yardstick { name: "the finest setting".into(), ms: Some(ms(&finest)) })
         }
     };
@@ -140,9 +140,9 @@ fn ms(picture: &Picture) -> f64 {
     picture.steps.total_ms()
 }
 
-fn point(way: &Way, picture: &Picture, truth: &Light) -> Result<Point> {
+fn point(way: &Way, picture: &Picture, truth: &LinearImage) -> Result<Point> {
     let film: &Film = &picture.film;
-    let difference = compare(truth, &Light::from(film))?;
+    let difference = compare(truth, &LinearImage::from(film))?;
     Ok(Point {
         sweep: way.sweep.clone(),
         value: way.value,

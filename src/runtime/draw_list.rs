@@ -16,7 +16,7 @@ pub const MAX_LIGHTS: usize = 16;
 pub struct DrawList<'a> {
     /// Opaque surfaces, furred or not.
     pub skins: Vec<SkinMesh<'a>>,
-    /// What the furred ones wear.
+    /// What the furred ones carry.
     pub furs: Vec<CoatMesh<'a>>,
     /// Hair textures.
     pub tiles: &'a [Tile],

@@ -1,6 +1,6 @@
 //! Depth of field after the fact: a film's layers by depth, each blurred by its circle of confusion (`docs/steps/film.md`).
 
-use super::projection::View;
+use super::projection::Projection;
 use crate::data::film::Film;
 use crate::math::{DVec4, Vec2};
 use rayon::prelude::*;
@@ -44,7 +44,7 @@ impl Lens {
 /// What lies at one circle of confusion forms a layer. A layer is known where nothing stands before it; under what does, it
 /// is continued from around. Layers are blurred one by one and put over each other, so that what is sharp takes nothing
 /// from what is blurred behind it, and what is blurred in front does not thin out what it hides.
-pub fn defocus(film: &Film, view: &View, lens: &Lens) -> Film {
+pub fn defocus(film: &Film, view: &Projection, lens: &Lens) -> Film {
     let radii: Vec<f32> = (0..film.alpha.len()).map(|i| radius_px(film, view, lens, i)).collect();
     let covered = || radii.iter().zip(&film.alpha).filter(|&(_, &alpha)| alpha > 0.0).map(|(&r, _)| r);
     let (low, high) = covered().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), r| (low.min(r), high.max(r)));
@@ -78,7 +78,7 @@ pub fn defocus(film: &Film, view: &View, lens: &Lens) -> Film {
 }
 
 /// Depth of what stands in the middle of the picture, m: the median over its covered pixels; none where there are none.
-pub fn middle_depth_m(film: &Film, view: &View) -> Option<f32> {
+pub fn middle_depth_m(film: &Film, view: &Projection) -> Option<f32> {
     let span = |size: usize| (size * 9 / 20)..(size * 11 / 20).max(size * 9 / 20 + 1).min(size);
     let mut depths: Vec<f32> = span(film.height)
         .flat_map(|y| span(film.width).map(move |x| y * film.width + x))
@@ -90,12 +90,12 @@ pub fn middle_depth_m(film: &Film, view: &View) -> Option<f32> {
 }
 
 /// Depth along the optical axis, from the film's distance along the ray, m.
-fn depth_m(film: &Film, view: &View, i: usize) -> f32 {
+fn depth_m(film: &Film, view: &Projection, i: usize) -> f32 {
     let middle = Vec2::new((i % film.width) as f32 + 0.5, (i / film.width) as f32 + 0.5);
     film.depth_m[i] / view.direction(middle).length()
 }
 
-fn radius_px(film: &Film, view: &View, lens: &Lens, i: usize) -> f32 {
+fn radius_px(film: &Film, view: &Projection, lens: &Lens, i: usize) -> f32 {
     if film.alpha[i] > 0.0 { lens.radius_px(view.focal_px, depth_m(film, view, i).max(view.near_m)) } else { 0.0 }
 }
 

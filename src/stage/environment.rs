@@ -79,7 +79,7 @@ impl Environment {
     ///
     /// Their irradiances sum to the map's ∫ L dω. Dark regions give no light.
     pub fn median_cut(&self, count: usize) -> Vec<Directional> {
-        let mut regions = vec![Region { x: [0, self.width], y: [0, self.height] }];
+        let mut regions = vec![MapRegion { x: [0, self.width], y: [0, self.height] }];
         while regions.len() < count {
             // The most powerful region that can be cut.
             let Some(i) = (0..regions.len())
@@ -99,12 +99,12 @@ impl Environment {
         f64::from(luminance(self.radiance[y * self.width + x]) * self.solid_angle_sr(y))
     }
 
-    fn power(&self, region: &Region) -> f64 {
+    fn power(&self, region: &MapRegion) -> f64 {
         let (x, y) = (region.x, region.y);
         (y[0]..y[1]).map(|row| (x[0]..x[1]).map(|column| self.power_of_pixel(column, row)).sum::<f64>()).sum()
     }
 
-    fn halve(&self, region: &Region) -> (Region, Region) {
+    fn halve(&self, region: &MapRegion) -> (MapRegion, MapRegion) {
         let [x0, x1] = region.x;
         let [y0, y1] = region.y;
         let middle = 0.5 * (y0 + y1) as f32 / self.height as f32;
@@ -112,10 +112,10 @@ impl Environment {
         let down = (y1 - y0) as f32 * PI / self.height as f32;
         if x1 - x0 > 1 && (across >= down || y1 - y0 == 1) {
             let at = self.median(x0, x1, |x| (y0..y1).map(|y| self.power_of_pixel(x, y)).sum());
-            (Region { x: [x0, at], y: region.y }, Region { x: [at, x1], y: region.y })
+            (MapRegion { x: [x0, at], y: region.y }, MapRegion { x: [at, x1], y: region.y })
         } else {
             let at = self.median(y0, y1, |y| (x0..x1).map(|x| self.power_of_pixel(x, y)).sum());
-            (Region { x: region.x, y: [y0, at] }, Region { x: region.x, y: [at, y1] })
+            (MapRegion { x: region.x, y: [y0, at] }, MapRegion { x: region.x, y: [at, y1] })
         }
     }
 
@@ -131,7 +131,7 @@ impl Environment {
         (from + at.unwrap_or(0) + 1).clamp(from + 1, to - 1)
     }
 
-    fn light(&self, region: &Region) -> Option<Directional> {
+    fn light(&self, region: &MapRegion) -> Option<Directional> {
         let (mut irradiance, mut towards) = (Vec3::ZERO, Vec3::ZERO);
         for y in region.y[0]..region.y[1] {
             let solid_angle = self.solid_angle_sr(y);
@@ -146,12 +146,12 @@ impl Environment {
     }
 }
 
-struct Region {
+struct MapRegion {
     x: [usize; 2],
     y: [usize; 2],
 }
 
-impl Region {
+impl MapRegion {
     fn pixels(&self) -> usize {
         (self.x[1] - self.x[0]) * (self.y[1] - self.y[0])
     }

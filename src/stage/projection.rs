@@ -9,7 +9,7 @@ const NEAREST: f32 = 1e-4;
 
 /// The projection of one camera to one film. The middle of pixel (x, y) is at (x + ½, y + ½), rows from the top.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
+pub struct Projection {
     /// Position, m.
     pub eye_m: Vec3,
     /// Unit vectors: to the right, up, and into the picture.
@@ -24,7 +24,7 @@ pub struct View {
     pub centre_px: Vec2,
 }
 
-impl View {
+impl Projection {
     /// Of a camera, for a film of `size`, in coordinates whose origin lies at `origin_m` in the world.
     ///
     /// # Errors

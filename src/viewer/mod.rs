@@ -24,7 +24,7 @@ use subject::subject;
 
 /// How to look at a coat.
 #[derive(Clone, Debug)]
-pub struct Options {
+pub struct ViewOptions {
     /// Which adapter draws.
     pub device: Choice,
     /// Camera, light and development.
@@ -37,7 +37,7 @@ pub struct Options {
     pub samples: u32,
 }
 
-impl Default for Options {
+impl Default for ViewOptions {
     fn default() -> Self {
         Self {
             device: Choice::Auto,
@@ -132,7 +132,7 @@ pub fn parse_show(text: &str) -> Result<Subject> {
 /// # Errors
 /// [`crate::error::Kind::Device`] without an adapter, naming the package that brings one; [`crate::error::Kind::Usage`] for an
 /// unknown animation or a size that does not fit; [`crate::error::Kind::Input`] for broken textures.
-pub fn screenshot(asset: &Asset, coat: &Coat, options: &Options) -> Result<Shot> {
+pub fn screenshot(asset: &Asset, coat: &Coat, options: &ViewOptions) -> Result<Shot> {
     let mut shots = shoot(asset, coat, options, std::slice::from_ref(&options.stage.viewpoint))?;
     let picture = shots.pictures.remove(0);
     Ok(shots.developed(picture, options))
@@ -142,7 +142,7 @@ pub fn screenshot(asset: &Asset, coat: &Coat, options: &Options) -> Result<Shot>
 ///
 /// # Errors
 /// As [`screenshot`]; [`crate::error::Kind::Usage`] for a number of views out of range, or a camera, which cannot turn.
-pub fn turntable(asset: &Asset, coat: &Coat, options: &Options, views: u32) -> Result<Shot> {
+pub fn turntable(asset: &Asset, coat: &Coat, options: &ViewOptions, views: u32) -> Result<Shot> {
     if !(1..=64).contains(&views) {
         return Err(Error::usage("the number of views is out of range")
             .with_parameter("turntable")
@@ -174,14 +174,14 @@ struct Shots {
 }
 
 impl Shots {
-    fn developed(mut self, picture: Picture, options: &Options) -> Shot {
+    fn developed(mut self, picture: Picture, options: &ViewOptions) -> Shot {
         let develop = || tone::develop(&picture.film(), &options.stage.development);
         let image = self.recorder.step("draw: develop", develop, bytes_of);
         Shot { picture, image, report: self.recorder.finish(), legend: self.legend }
     }
 }
 
-fn shoot(asset: &Asset, coat: &Coat, options: &Options, viewpoints: &[Viewpoint]) -> Result<Shots> {
+fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpoint]) -> Result<Shots> {
     let mut recorder = Recorder::new("");
     let gpu = recorder.step("open device", || Gpu::open(&options.device), |_| 0)?;
     recorder.device(gpu.adapter.to_string());

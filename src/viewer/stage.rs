@@ -34,15 +34,18 @@ pub fn textures(asset: &Asset) -> Result<Textures> {
 pub fn scene<'a>(asset: &'a Asset, coat: &'a Coat, textures: &'a Textures, pose: &Pose) -> DrawList<'a> {
     let mut scene = DrawList { tiles: &coat.tiles, ..Default::default() };
     for part in &asset.parts {
-        let worn: Vec<_> =
-            coat.primitives.iter().filter(|worn| (worn.mesh, worn.primitive) == (part.mesh, part.primitive)).collect();
+        let carried: Vec<_> = coat
+            .primitives
+            .iter()
+            .filter(|coat_primitive| (coat_primitive.mesh, coat_primitive.primitive) == (part.mesh, part.primitive))
+            .collect();
         for &node in &part.nodes {
             let posed = part.posed(asset, pose, node, coat.metres_per_unit);
-            for worn in &worn {
-                scene.skins.push(furred_skin(part, &posed, worn, &coat.tiles[worn.tile], textures));
-                scene.furs.extend(furs(&posed, worn, &coat.tiles));
+            for coat_primitive in &carried {
+                scene.skins.push(furred_skin(part, &posed, coat_primitive, &coat.tiles[coat_primitive.tile], textures));
+                scene.furs.extend(furs(&posed, coat_primitive, &coat.tiles));
             }
-            scene.skins.push(bare_skin(part, &posed, &worn, textures));
+            scene.skins.push(bare_skin(part, &posed, &carried, textures));
         }
     }
     scene
@@ -57,42 +60,47 @@ pub fn points_m(scene: &DrawList<'_>) -> Vec<Vec3> {
 }
 
 /// What a coat primitive's shells and fins are, with its first tile alone.
-pub(super) fn fur<'a>(posed: &Posed, worn: &'a CoatPrimitive) -> CoatMesh<'a> {
-    let at = |list: &[Vec3]| worn.base_vertex.iter().map(|&v| list[v as usize]).collect();
+pub(super) fn fur<'a>(posed: &Posed, coat_primitive: &'a CoatPrimitive) -> CoatMesh<'a> {
+    let at = |list: &[Vec3]| coat_primitive.base_vertex.iter().map(|&v| list[v as usize]).collect();
     let turned = |list: &[Vec3]| {
-        worn.base_vertex.iter().zip(list).map(|(&v, &o)| posed.world_from_offset[v as usize] * o).collect()
+        coat_primitive.base_vertex.iter().zip(list).map(|(&v, &o)| posed.world_from_offset[v as usize] * o).collect()
     };
     CoatMesh {
-        tile: worn.tile,
+        tile: coat_primitive.tile,
         positions_m: at(&posed.positions_m),
         normals: at(&posed.normals),
-        offsets_m: turned(&worn.offset),
-        axes: turned(&worn.axis),
-        uv: Cow::from(&worn.uv),
-        tint: Cow::from(&worn.tint),
-        triangles: &worn.triangles,
-        fins: Cow::from(&worn.fins),
+        offsets_m: turned(&coat_primitive.offset),
+        axes: turned(&coat_primitive.axis),
+        uv: Cow::from(&coat_primitive.uv),
+        tint: Cow::from(&coat_primitive.tint),
+        triangles: &coat_primitive.triangles,
+        fins: Cow::from(&coat_primitive.fins),
         over_last: false,
     }
 }
 
 /// What a coat primitive is drawn as: once, or once per tile where it passes from one into another.
-fn furs<'a>(posed: &Posed, worn: &'a CoatPrimitive, tiles: &[Tile]) -> Vec<CoatMesh<'a>> {
-    let fur = fur(posed, worn);
-    let Some(blend) = &worn.blend else { return vec![fur] };
+fn furs<'a>(posed: &Posed, coat_primitive: &'a CoatPrimitive, tiles: &[Tile]) -> Vec<CoatMesh<'a>> {
+    let fur = fur(posed, coat_primitive);
+    let Some(blend) = &coat_primitive.blend else { return vec![fur] };
     // Two coats at complementary densities: drawn over one another, optical depths add.
     let dense = |share: &dyn Fn(f32) -> f32| {
-        worn.tint.iter().zip(&blend.weight).map(|(tint, &w)| tint.truncate().extend(tint.w * share(w))).collect()
+        coat_primitive
+            .tint
+            .iter()
+            .zip(&blend.weight)
+            .map(|(tint, &w)| tint.truncate().extend(tint.w * share(w)))
+            .collect()
     };
-    let (first, second) = (&tiles[worn.tile], &tiles[blend.tile]);
+    let (first, second) = (&tiles[coat_primitive.tile], &tiles[blend.tile]);
     let longer = first.fin.width_m / second.fin.width_m;
     let thicker = first.fin.thickness_m / second.fin.thickness_m;
     let fin = |f: &FinEdge| FinEdge { u: f.u.map(|u| u * longer), thickness: f.thickness * thicker, ..*f };
     let into = CoatMesh {
         tile: blend.tile,
-        uv: worn.uv.iter().map(|uv| *uv * (first.edge_m / second.edge_m)).collect(),
+        uv: coat_primitive.uv.iter().map(|uv| *uv * (first.edge_m / second.edge_m)).collect(),
         tint: dense(&|w| w),
-        fins: worn.fins.iter().map(fin).collect(),
+        fins: coat_primitive.fins.iter().map(fin).collect(),
         over_last: true,
         ..fur.clone()
     };
@@ -103,48 +111,54 @@ fn furs<'a>(posed: &Posed, worn: &'a CoatPrimitive, tiles: &[Tile]) -> Vec<CoatM
 fn furred_skin<'a>(
     part: &Part,
     posed: &Posed,
-    worn: &CoatPrimitive,
+    coat_primitive: &CoatPrimitive,
     tile: &Tile,
     textures: &'a Textures,
 ) -> SkinMesh<'a> {
     let whole = surface(part, posed, textures);
-    let at = |list: &[Vec3]| worn.base_vertex.iter().map(|&v| list[v as usize]).collect();
+    let at = |list: &[Vec3]| coat_primitive.base_vertex.iter().map(|&v| list[v as usize]).collect();
     SkinMesh {
         positions_m: at(&whole.positions_m),
         normals: at(&whole.normals),
         colour: at(&whole.colour),
-        uv: if whole.uv.is_empty() { vec![] } else { worn.base_vertex.iter().map(|&v| whole.uv[v as usize]).collect() },
-        tile: Some(worn.tile),
-        coat_uv: worn.uv.clone(),
-        coat_density: worn
+        uv: if whole.uv.is_empty() {
+            vec![]
+        } else {
+            coat_primitive.base_vertex.iter().map(|&v| whole.uv[v as usize]).collect()
+        },
+        tile: Some(coat_primitive.tile),
+        coat_uv: coat_primitive.uv.clone(),
+        coat_density: coat_primitive
             .tint
             .iter()
-            .zip(&worn.offset)
+            .zip(&coat_primitive.offset)
             .map(|(t, o)| match tile.sampled {
                 _ if *o == Vec3::ZERO => 0.0,
                 Sampled::Square => t.w,
                 Sampled::Skin => 1.0,
             })
             .collect(),
-        triangles: worn.triangles.clone(),
+        triangles: coat_primitive.triangles.clone(),
         ..whole
     }
 }
 
 /// A part where no coat covers it.
-fn bare_skin<'a>(part: &Part, posed: &Posed, worn: &[&CoatPrimitive], textures: &'a Textures) -> SkinMesh<'a> {
-    SkinMesh { triangles: uncovered(part, worn), ..surface(part, posed, textures) }
+fn bare_skin<'a>(part: &Part, posed: &Posed, carried: &[&CoatPrimitive], textures: &'a Textures) -> SkinMesh<'a> {
+    SkinMesh { triangles: uncovered(part, carried), ..surface(part, posed, textures) }
 }
 
 /// The triangles of a part that no coat covers.
-pub(super) fn uncovered(part: &Part, worn: &[&CoatPrimitive]) -> Vec<[u32; 3]> {
+pub(super) fn uncovered(part: &Part, carried: &[&CoatPrimitive]) -> Vec<[u32; 3]> {
     let sorted = |mut triangle: [u32; 3]| {
         triangle.sort_unstable();
         triangle
     };
-    let covered: HashSet<[u32; 3]> = worn
+    let covered: HashSet<[u32; 3]> = carried
         .iter()
-        .flat_map(|worn| worn.triangles.iter().map(|t| sorted(t.map(|v| worn.base_vertex[v as usize]))))
+        .flat_map(|coat_primitive| {
+            coat_primitive.triangles.iter().map(|t| sorted(t.map(|v| coat_primitive.base_vertex[v as usize])))
+        })
         .collect();
     part.stored.triangles.iter().copied().filter(|&t| !covered.contains(&sorted(t))).collect()
 }

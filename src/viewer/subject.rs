@@ -11,12 +11,13 @@ use crate::error::Result;
 /// As [`Asset::subject`].
 pub fn subject(asset: &Asset, coat: &Coat) -> Result<Subject> {
     let mut subject = asset.subject(coat.metres_per_unit)?;
-    for worn in &coat.primitives {
-        let is_of = |part: &&crate::asset::Part| (part.mesh, part.primitive) == (worn.mesh, worn.primitive);
+    for coat_primitive in &coat.primitives {
+        let is_of =
+            |part: &&crate::asset::Part| (part.mesh, part.primitive) == (coat_primitive.mesh, coat_primitive.primitive);
         let Some(part) = asset.parts.iter().find(is_of) else { continue };
-        for &v in worn.triangles.iter().flatten() {
-            let offset = worn.offset[v as usize].as_dvec3();
-            let world = part.world_from_local(worn.base_vertex[v as usize] as usize) * offset;
+        for &v in coat_primitive.triangles.iter().flatten() {
+            let offset = coat_primitive.offset[v as usize].as_dvec3();
+            let world = part.world_from_local(coat_primitive.base_vertex[v as usize] as usize) * offset;
             subject.hair_m = subject.hair_m.max(world.length() * coat.metres_per_unit);
         }
     }

@@ -30,7 +30,7 @@ impl Reach {
 
 /// The tiles of a picture, or of a band of its rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Grid {
+pub struct TileGrid {
     /// Tiles per row.
     pub columns: usize,
     /// First row of tiles.
@@ -39,7 +39,7 @@ pub struct Grid {
     pub rows: usize,
 }
 
-impl Grid {
+impl TileGrid {
     /// The tiles of a whole picture of this size.
     pub fn whole(size: [usize; 2]) -> Self {
         Self { columns: size[0].div_ceil(TILE), first_row: 0, rows: size[1].div_ceil(TILE) }
@@ -71,7 +71,7 @@ pub struct Bins {
 
 impl Bins {
     /// Sorts the items 0 … count−1 into the tiles of `grid` that `reach` of each touches, in their order.
-    pub fn new(grid: &Grid, count: usize, reach: impl Fn(usize) -> Reach + Sync) -> Self {
+    pub fn new(grid: &TileGrid, count: usize, reach: impl Fn(usize) -> Reach + Sync) -> Self {
         // By chunk of items and row of tiles: columns and items.
         const CHUNK: usize = 1 << 15;
         let chunks: Vec<Vec<Vec<(u32, u32)>>> = (0..count.div_ceil(CHUNK))

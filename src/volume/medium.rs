@@ -35,7 +35,7 @@ pub struct Medium {
 
 /// A part of a ray's way through it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
+pub struct MediumStep {
     /// Where it begins, m along the ray.
     pub from_m: f32,
     /// Where it ends, m along the ray.
@@ -46,7 +46,7 @@ pub struct Step {
     pub t: f32,
 }
 
-impl Step {
+impl MediumStep {
     /// Where its middle is, m along the ray.
     pub fn middle_m(&self) -> f32 {
         0.5 * (self.from_m + self.to_m)
@@ -101,8 +101,8 @@ impl Medium {
         })
     }
 
-    /// The same undercoat as a skin wears it, every hair mapped by `world_from_square` and as thick as before.
-    pub fn worn(&self, world_from_square: Mat3) -> Self {
+    /// The same undercoat as a skin carries it, every hair mapped by `world_from_square` and as thick as before.
+    pub fn mapped(&self, world_from_square: Mat3) -> Self {
         Self { world_from_square, ..self.clone() }
     }
 
@@ -144,7 +144,7 @@ impl Medium {
     ///
     /// Extinction is ρ⊥ D |sin∠|, ρ⊥ being hair length per volume; the ends of hairs between a step's heights add
     /// (π/4) D² |cos∠| each.
-    pub fn walk(&self, ray: &Ray, range: DepthRange, mut visit: impl FnMut(Step) -> bool) {
+    pub fn walk(&self, ray: &Ray, range: DepthRange, mut visit: impl FnMut(MediumStep) -> bool) {
         let undercoat = &self.undercoat;
         let square_from_world = self.world_from_square.inverse();
         let (origin_m, rate) = (square_from_world * ray.origin_m, square_from_world * ray.direction);
@@ -176,7 +176,7 @@ impl Medium {
             let before = std::mem::replace(&mut reach, self.reaching(begin_t + rate_t * to_m));
             let blocked = sides_per_m * self.reaching.at(t) * step_m + per_end * (reach - before).abs();
             let crowding = self.crowding((origin_m + rate * middle_m).truncate(), t);
-            if !visit(Step { from_m, to_m, depth: blocked * crowding, t }) {
+            if !visit(MediumStep { from_m, to_m, depth: blocked * crowding, t }) {
                 return;
             }
         }

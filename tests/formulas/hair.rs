@@ -37,7 +37,7 @@ pub const MAIN: Source = Source {
 #import furrier::guard::{opacity_at, guard_ramp, radius_factor, along_hair, root_of}
 #import furrier::undercoat::{mean_sine, code_value, decode_value}
 #import furrier::undercoat_look::undercoat_ramp
-#import furrier::stretch::{pack_faces, unpack_albedo, unpack_tangent}
+#import furrier::virtual_fragment::{pack_faces, unpack_albedo, unpack_tangent}
 
 @group(1) @binding(0) var<storage, read> inputs: array<vec4<f32>>;
 @group(1) @binding(1) var<storage, read_write> outputs: array<vec4<f32>>;

@@ -20,7 +20,7 @@ pub const ELSEWHERE: &[(&str, &[&str], &str)] = &[
         &["skin_z", "window_of"],
         "which pixels a triangle has: hybrid_twins.rs compares every pixel",
     ),
-    ("shared/faces.wgsl", &["on_corner", "face_place", "face_corner", "face_shape", "place_on", "start_m"], WALKS),
+    ("shared/faces.wgsl", &["on_corner", "face_point", "face_corner", "face_shape", "place_on", "start_m"], WALKS),
     ("shared/march.wgsl", &["walk_from", "crowding", "reach_at", "step_of", "advance"], WALKS),
     ("shared/undercoat_look.wgsl", &["shadow_byte", "key_depth", "undercoat_look"], WALKS),
     ("shared/skin_look.wgsl", &["skin_look"], WALKS),
@@ -35,11 +35,11 @@ pub const ELSEWHERE: &[(&str, &[&str], &str)] = &[
     ("hybrid/density.wgsl", &["density"], WALKS),
     ("hybrid/shadow.wgsl", &["shadow"], WALKS),
     ("hybrid/march.wgsl", &["before", "entry", "place_of", "put", "march_pixel", "march"], WALKS),
-    ("hybrid/strands.wgsl", &["step_at", "depth_of", "log_look", "put", "shade"], COLOURS),
+    ("hybrid/strands.wgsl", &["step_at", "depth_of", "log_radiance_at", "put", "shade"], COLOURS),
     (
         "hybrid/composite.wgsl",
         &[
-            "log_look",
+            "log_radiance_at",
             "bend_at",
             "radiance_at",
             "opacity_of",

@@ -16,7 +16,7 @@ use furrier::math::{Vec2, Vec3};
 use furrier::shade::lobes::Lobes;
 use furrier::volume::march::content::TABLES;
 use furrier::volume::mean;
-use furrier::volume::shell::prism::{Place, Prism};
+use furrier::volume::shell::prism::{Prism, ShellPoint};
 use furrier::volume::shell::{lattice, sides};
 
 /// Vectors per input.
@@ -29,7 +29,7 @@ pub const MAIN: Source = Source {
         "
 #import furrier::scene::{scene, triangles, prism_of, normal_at, lean_at, tint_at, density_at, length_at, clump_at, table_at,
     point_of, unit_or}
-#import furrier::prism::{Place, barycentric, moved, jacobian, rates_along, to_side_m, inside_of, around_corners, corner_place,
+#import furrier::prism::{ShellPoint, barycentric, moved, jacobian, rates_along, to_side_m, inside_of, around_corners, corner_point,
     corners_of}
 #import furrier::undercoat::{column_over, column_crowding}
 #import furrier::mean_shadow::{mean_depths, tips_m}
@@ -53,7 +53,7 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let c = inputs[2u * i + 1u];
     let triangle = u32(a.x * f32(scene.triangle_count));
     let r = sqrt(a.y);
-    let place = Place(vec2(r * (1.0 - a.z), r * a.z), a.w);
+    let place = ShellPoint(vec2(r * (1.0 - a.z), r * a.z), a.w);
     let b = barycentric(place);
     let along = on_sphere(c.xy);
     let prism = prism_of(triangle);
@@ -66,13 +66,13 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let beside = moved(place, vec3(c.zw - 0.5, 0.3), 0.5);
     let corner = u32(c.z * 3.0);
     outputs[first + 3u] = vec4(beside.b, beside.t, to_side_m(prism, corner, j.at_m, along, place));
-    let inside = inside_of(Place(3.0 * c.xy - 1.0, 3.0 * c.z - 1.0));
+    let inside = inside_of(ShellPoint(3.0 * c.xy - 1.0, 3.0 * c.z - 1.0));
     outputs[first + 4u] = vec4(inside.b, inside.t, density_at(triangle, b));
     let d = u32(c.w * 6.0);
     let around = around_corners(b, d);
     outputs[first + 5u] = vec4(vec3<f32>(around.corners), length_at(triangle, b));
     outputs[first + 6u] = vec4(around.weights, clump_at(triangle, b));
-    outputs[first + 7u] = vec4(corner_place(u32(c.z * f32(corners_of(d))), d), f32(corners_of(d)));
+    outputs[first + 7u] = vec4(corner_point(u32(c.z * f32(corners_of(d))), d), f32(corners_of(d)));
     outputs[first + 8u] = vec4(normal_at(triangle, b), 0.0);
     outputs[first + 9u] = vec4(lean_at(triangle, b, vec3(1.0)), 0.0);
     outputs[first + 10u] = vec4(tint_at(triangle, b), column_crowding(column_over(triangle, b), a.w));
@@ -171,7 +171,7 @@ fn shaders_and_rust_agree_on_where_things_lie() {
         let (a, c, out) = (inputs[2 * i], inputs[2 * i + 1], &outputs[OUTPUTS * i..][..OUTPUTS]);
         let triangle = (a.x * triangles as f32) as usize;
         let r = a.y.sqrt();
-        let place = Place { b: [r * (1.0 - a.z), r * a.z], t: a.w };
+        let place = ShellPoint { b: [r * (1.0 - a.z), r * a.z], t: a.w };
         let b = place.barycentric();
         let corners = scene.skin.triangles[triangle].map(|v| v as usize);
         let mix = |of: &dyn Fn(usize) -> Vec3| of(corners[0]) * b.x + of(corners[1]) * b.y + of(corners[2]) * b.z;
@@ -218,7 +218,7 @@ fn shaders_and_rust_agree_on_where_things_lie() {
             worst.note_all(i, "weights", out[6].truncate(), weights);
         }
         assert_eq!(out[7].w, lattice::corners(d) as f32, "corners of {d}");
-        let at = lattice::places(d).nth((c.z * lattice::corners(d) as f32) as usize);
+        let at = lattice::points(d).nth((c.z * lattice::corners(d) as f32) as usize);
         worst.note_all(i, "corner", out[7].truncate(), at.unwrap());
         let normal = mix(&|v| normals[v]).normalize();
         worst.note_all(i, "normal", out[8].truncate(), normal);

@@ -5,7 +5,7 @@ use furrier::data::shell::guards::{LEAST_COSINE, LEAST_EXTINCTION};
 use furrier::math::{DVec2, DVec3, Vec3};
 use furrier::volume::mean;
 use furrier::volume::shell::lattice;
-use furrier::volume::shell::prism::Place;
+use furrier::volume::shell::prism::ShellPoint;
 use std::f64::consts::PI;
 
 /// (b₁, b₂, t) moved into the prism.
@@ -16,7 +16,7 @@ pub fn inside(at: Vec3) -> Vec3 {
 }
 
 /// The side that a line along `rates` passes first, 3 for top and skin, and after how far.
-pub fn next_side(place: &Place, rates: Vec3) -> (f32, f32) {
+pub fn next_side(place: &ShellPoint, rates: Vec3) -> (f32, f32) {
     let b = place.barycentric();
     let after = |left: f32, rate: f32| if rate < 0.0 { left / -rate } else { f32::INFINITY };
     let sides = [

@@ -6,8 +6,8 @@ mod reading;
 use crate::common::shared;
 use crate::made::coat_for;
 use crate::poses::animated;
-use furrier::asset::coat::{NAME, dress};
-use furrier::asset::primitive::Influences;
+use furrier::asset::coat::{NAME, with_coat};
+use furrier::asset::stored::Influences;
 use furrier::asset::{self, Asset, Document, Fallback, Part, Pose};
 use furrier::bake::units::Units;
 use furrier::bake::{Method, Request, bake};
@@ -159,7 +159,8 @@ fn the_witness_reads_inputs_as_we_do() {
 fn the_witness_finds_the_input_in_what_we_write() {
     for (name, bytes) in inputs() {
         let asset = parsed(&bytes, &name);
-        let written = dress(&asset, &coat_for(&asset), Fallback::Shells(2)).expect("dressed").to_glb().expect("a GLB");
+        let written =
+            with_coat(&asset, &coat_for(&asset), Fallback::Shells(2)).expect("dressed").to_glb().expect("a GLB");
         assert_eq!(departures(&asset, &written), Vec::<String>::new(), "{name}");
         let (again, reading) = (parsed(&written, &name), Reading::of(&written));
         let coat = asset::coat::coat_of(&again).expect("a coat");
@@ -231,7 +232,7 @@ fn one_target(weights: &[f64]) -> bool {
 }
 
 /// What of the plain shells of a baked file the witness sees otherwise: they move as the coat does, on the skin's joints,
-/// weights and morph targets. There are `shells` of them, one mesh for each that wears a coat.
+/// weights and morph targets. There are `shells` of them, one mesh for each that has a coat.
 pub fn shell_departures(asset: &Asset, coat: &Coat, bytes: &[u8], shells: usize) -> Vec<String> {
     let reading = Reading::of(bytes);
     let moments = moments(asset, &reading);
@@ -305,7 +306,7 @@ pub fn baked(input: &str) -> Vec<u8> {
     std::fs::read(out).expect("the output")
 }
 
-/// What the witness sees otherwise in a file that wears a coat and two plain shells.
+/// What the witness sees otherwise in a file that has a coat and two plain shells.
 pub fn output_departures(bytes: &[u8], name: &str) -> Vec<String> {
     let asset = parsed(bytes, name);
     let coat = asset::coat::coat_of(&asset).expect("a coat");

@@ -2,7 +2,7 @@
 
 use super::flatten;
 use super::parts::{part_of, set_extension};
-use crate::asset::accessor::Layout;
+use crate::asset::accessor::AccessorLayout;
 use crate::asset::document::Document;
 use crate::asset::encode::Use;
 use crate::asset::json::At;
@@ -31,9 +31,9 @@ pub fn add(document: &mut Document, asset: &Asset, coat: &Coat, count: u32) -> R
     let nearest: Vec<CoatPrimitive> = coat.primitives.iter().flat_map(|p| nearest(p, coat)).collect();
     let meshes: std::collections::BTreeSet<usize> = nearest.iter().map(|p| p.mesh).collect();
     for mesh in meshes {
-        let worn: Vec<&CoatPrimitive> = nearest.iter().filter(|p| p.mesh == mesh).collect();
+        let carried: Vec<&CoatPrimitive> = nearest.iter().filter(|p| p.mesh == mesh).collect();
         let mut stacks = Vec::new();
-        for primitive in &worn {
+        for primitive in &carried {
             let part = part_of(asset, primitive)?;
             let tinted = coat.tiles[primitive.tile].sampled == Sampled::Square;
             stacks.push(stack(document, asset, part, primitive, &materials[primitive.tile], tinted)?);
@@ -54,19 +54,19 @@ pub fn add(document: &mut Document, asset: &Asset, coat: &Coat, count: u32) -> R
         }
         set_extension(&mut shells, json!({"fallback": true}));
         let shells = document.push("meshes", shells);
-        for &node in &part_of(asset, worn[0])?.nodes {
+        for &node in &part_of(asset, carried[0])?.nodes {
             place(document, node, shells, &name)?;
         }
     }
     Ok(())
 }
 
-/// A coat primitive without passages: every triangle of one wears the tile that it has most of.
-fn nearest(worn: &CoatPrimitive, coat: &Coat) -> Vec<CoatPrimitive> {
-    let Some(blend) = &worn.blend else { return vec![worn.clone()] };
-    let second = |t: usize| worn.triangles[t].iter().map(|&v| blend.weight[v as usize]).sum::<f32>() > 1.5;
-    let scale = coat.tiles[worn.tile].edge_m / coat.tiles[blend.tile].edge_m;
-    let mut parts = [worn.part(|t| !second(t)), worn.part(second)];
+/// A coat primitive without passages: every triangle of one carries the tile that it has most of.
+fn nearest(coat_primitive: &CoatPrimitive, coat: &Coat) -> Vec<CoatPrimitive> {
+    let Some(blend) = &coat_primitive.blend else { return vec![coat_primitive.clone()] };
+    let second = |t: usize| coat_primitive.triangles[t].iter().map(|&v| blend.weight[v as usize]).sum::<f32>() > 1.5;
+    let scale = coat.tiles[coat_primitive.tile].edge_m / coat.tiles[blend.tile].edge_m;
+    let mut parts = [coat_primitive.part(|t| !second(t)), coat_primitive.part(second)];
     parts[1].tile = blend.tile;
     parts[1].uv.iter_mut().for_each(|uv| *uv *= scale);
     parts.into_iter().filter(|part| !part.triangles.is_empty()).collect()
@@ -106,23 +106,24 @@ fn stack(
     document: &mut Document,
     asset: &Asset,
     part: &Part,
-    worn: &CoatPrimitive,
+    coat_primitive: &CoatPrimitive,
     materials: &[usize],
     tinted: bool,
 ) -> Result<Vec<Value>> {
-    let (n, shells) = (worn.base_vertex.len(), materials.len());
+    let (n, shells) = (coat_primitive.base_vertex.len(), materials.len());
     let vertices = || (0..shells).flat_map(|shell| (0..n).map(move |v| ((shell as f32 + 0.5) / shells as f32, v)));
-    let base = |v: usize| worn.base_vertex[v] as usize;
-    let positions: Vec<Vec3> = vertices().map(|(h, v)| part.stored.positions[base(v)] + h * worn.offset[v]).collect();
+    let base = |v: usize| coat_primitive.base_vertex[v] as usize;
+    let positions: Vec<Vec3> =
+        vertices().map(|(h, v)| part.stored.positions[base(v)] + h * coat_primitive.offset[v]).collect();
     let normals: Vec<Vec3> = vertices().map(|(_, v)| part.stored.normals[base(v)]).collect();
-    let uvs: Vec<_> = vertices().map(|(_, v)| worn.uv[v]).collect();
+    let uvs: Vec<_> = vertices().map(|(_, v)| coat_primitive.uv[v]).collect();
     let mut attributes = json!({
         "POSITION": document.push_positions(&positions, Use::Vertices),
         "NORMAL": document.push_vec3(&normals, Use::Vertices),
         "TEXCOORD_0": document.push_vec2(&uvs, Use::Vertices),
     });
-    if tinted && worn.tint.iter().any(|tint| *tint != Vec4::ONE) {
-        let tints: Vec<Vec4> = vertices().map(|(_, v)| worn.tint[v].clamp(Vec4::ZERO, Vec4::ONE)).collect();
+    if tinted && coat_primitive.tint.iter().any(|tint| *tint != Vec4::ONE) {
+        let tints: Vec<Vec4> = vertices().map(|(_, v)| coat_primitive.tint[v].clamp(Vec4::ZERO, Vec4::ONE)).collect();
         attributes["COLOR_0"] = json!(document.push_vec4(&tints, Use::Vertices));
     }
     let indices_of: Vec<usize> = vertices().map(|(_, v)| base(v)).collect();
@@ -142,7 +143,7 @@ fn stack(
             .map(|(h, v)| {
                 let rest = part.stored.normals[base(v)].as_dvec3();
                 let morphed = (rest + change(&morph.normals, base(v)).as_dvec3()).try_normalize().unwrap_or(rest);
-                let offset = worn.offset[v].as_dvec3();
+                let offset = coat_primitive.offset[v].as_dvec3();
                 change(&morph.positions, base(v)) + h * (turn(rest, morphed) * offset - offset).as_vec3()
             })
             .collect();
@@ -158,7 +159,7 @@ fn stack(
     for (shell, material) in materials.iter().enumerate() {
         let corner = |v: u32| v + (shell * n) as u32;
         let turned = |t: &[u32; 3]| if mirrored { [t[0], t[2], t[1]] } else { *t };
-        let indices: Vec<u32> = worn.triangles.iter().flat_map(turned).map(corner).collect();
+        let indices: Vec<u32> = coat_primitive.triangles.iter().flat_map(turned).map(corner).collect();
         let mut primitive = json!({
             "attributes": attributes,
             "indices": document.push_integers(&indices, 1, Use::Indices),
@@ -175,7 +176,7 @@ fn stack(
 /// An accessor with the elements `of` another document's accessor, in their stored form.
 fn copy_elements(to: &mut Document, from: &Document, at: &At<'_>, of: &[usize]) -> Result<usize> {
     let accessor = from.root().entry("accessors", at.size()?)?;
-    let layout = Layout::of(from, at.size()?)?;
+    let layout = AccessorLayout::of(from, at.size()?)?;
     let (bytes, element) = (layout.bytes(from), layout.element());
     let picked: Vec<u8> = of.iter().flat_map(|&v| &bytes[v * element..(v + 1) * element]).copied().collect();
     let kind = accessor.need("type")?.text()?;

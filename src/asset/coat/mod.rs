@@ -10,7 +10,7 @@ mod write;
 pub use fallback::Fallback;
 pub use flatten::shells as flatten_shells;
 pub use read::{coat_of, read_coat};
-pub use write::{dress, refuse_second, write_coat};
+pub use write::{refuse_second, with_coat, write_coat};
 
 pub use super::extension::NAME;
 use crate::data::coat::{Coat, CoatPrimitive, Sampled};
@@ -19,7 +19,7 @@ use crate::data::coat::{Coat, CoatPrimitive, Sampled};
 pub const VERSION: u64 = 2;
 
 /// The oldest version of the extension that can hold `coat`: 2 where a tile was sampled on the skin, or a primitive of the
-/// asset wears several.
+/// asset carries several.
 pub fn version_of(coat: &Coat) -> u64 {
     let several = coat.primitives.windows(2).any(|two| owner(&two[0]) == owner(&two[1]));
     let blended = coat.primitives.iter().any(|primitive| primitive.blend.is_some());

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::math::{Vec2, Vec3, Vec4};
 use std::path::Path;
 
-/// Reads a file that wears a coat.
+/// Reads a file that has a coat.
 ///
 /// # Errors
 /// When the file cannot be read, has no coat, or one that contradicts itself.
@@ -19,7 +19,7 @@ pub fn read_coat(path: &Path) -> Result<(Asset, Coat)> {
     Ok((asset, coat))
 }
 
-/// The coat that an asset wears.
+/// The coat that an asset carries.
 ///
 /// # Errors
 /// When it has none, or one that contradicts itself.
@@ -27,7 +27,7 @@ pub fn coat_of(asset: &Asset) -> Result<Coat> {
     let document = &asset.document;
     let root = document.root();
     let Some(extension) = root.get("extensions").and_then(|e| e.get(NAME)) else {
-        return Err(Error::input("the file wears no coat")
+        return Err(Error::input("the file has no coat")
             .with_field(format!("extensions.{NAME}"))
             .with_found("nothing")
             .with_expected("a coat")
@@ -49,42 +49,42 @@ pub fn coat_of(asset: &Asset) -> Result<Coat> {
     }
     for (mesh, mesh_at) in root.list("meshes")?.iter().enumerate() {
         for (primitive, at) in mesh_at.list("primitives")?.iter().enumerate() {
-            let Some(wears) = at.get("extensions").and_then(|e| e.get(NAME)) else { continue };
+            let Some(carried) = at.get("extensions").and_then(|e| e.get(NAME)) else { continue };
             let empty = CoatPrimitive { mesh, primitive, ..CoatPrimitive::default() };
             // A coat on a mesh that the default scene does not show is nobody's.
             let Ok(part) = part_of(asset, &empty) else { continue };
-            let more = wears.list("more")?;
-            for wears in std::iter::once(&wears).chain(&more) {
-                let mut worn = empty.clone();
-                read_primitive(asset, wears, &mut worn, part.mirrored())?;
-                check(&worn, part, &coat.tiles)?;
-                coat.primitives.push(worn);
+            let more = carried.list("more")?;
+            for carried in std::iter::once(&carried).chain(&more) {
+                let mut coat_primitive = empty.clone();
+                read_primitive(asset, carried, &mut coat_primitive, part.mirrored())?;
+                check(&coat_primitive, part, &coat.tiles)?;
+                coat.primitives.push(coat_primitive);
             }
         }
     }
     Ok(coat)
 }
 
-fn read_primitive(asset: &Asset, at: &At<'_>, worn: &mut CoatPrimitive, mirrored: bool) -> Result<()> {
+fn read_primitive(asset: &Asset, at: &At<'_>, coat_primitive: &mut CoatPrimitive, mirrored: bool) -> Result<()> {
     let document = &asset.document;
     let attributes = at.need("attributes")?;
     let integers = |owner: &At<'_>, key: &str, width| document.integers(owner.need(key)?.size()?, width);
     let floats = |owner: &At<'_>, key: &str, width| document.floats(owner.need(key)?.size()?, width);
-    worn.tile = at.need("tile")?.size()?;
-    worn.base_vertex = integers(&attributes, "BASE_VERTEX", 1)?;
-    worn.patch = integers(&attributes, "PATCH", 1)?;
-    worn.uv = floats(&attributes, "TEXCOORD_0", 2)?.chunks_exact(2).map(Vec2::from_slice).collect();
-    worn.offset = floats(&attributes, "OFFSET", 3)?.chunks_exact(3).map(Vec3::from_slice).collect();
-    worn.axis = floats(&attributes, "AXIS", 3)?.chunks_exact(3).map(Vec3::from_slice).collect();
-    worn.tint = floats(&attributes, "TINT", 4)?.chunks_exact(4).map(Vec4::from_slice).collect();
+    coat_primitive.tile = at.need("tile")?.size()?;
+    coat_primitive.base_vertex = integers(&attributes, "BASE_VERTEX", 1)?;
+    coat_primitive.patch = integers(&attributes, "PATCH", 1)?;
+    coat_primitive.uv = floats(&attributes, "TEXCOORD_0", 2)?.chunks_exact(2).map(Vec2::from_slice).collect();
+    coat_primitive.offset = floats(&attributes, "OFFSET", 3)?.chunks_exact(3).map(Vec3::from_slice).collect();
+    coat_primitive.axis = floats(&attributes, "AXIS", 3)?.chunks_exact(3).map(Vec3::from_slice).collect();
+    coat_primitive.tint = floats(&attributes, "TINT", 4)?.chunks_exact(4).map(Vec4::from_slice).collect();
     let indices = integers(at, "indices", 1)?;
-    worn.triangles = indices.as_chunks::<3>().0.to_vec();
+    coat_primitive.triangles = indices.as_chunks::<3>().0.to_vec();
     if mirrored {
-        worn.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        coat_primitive.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     }
     if let Some(blend) = at.get("blend") {
         let tile = blend.need("tile")?.size()?;
-        worn.blend = Some(Blend { tile, weight: floats(&blend, "weights", 1)? });
+        coat_primitive.blend = Some(Blend { tile, weight: floats(&blend, "weights", 1)? });
     }
     let Some(fins) = at.get("fins") else { return Ok(()) };
     let (edges, strips) = (integers(&fins, "edges", 4)?, floats(&fins, "strips", 3)?);
@@ -93,7 +93,7 @@ fn read_primitive(asset: &Asset, at: &At<'_>, worn: &mut CoatPrimitive, mirrored
     }
     for (e, s) in edges.chunks_exact(4).zip(strips.chunks_exact(3)) {
         let opposite = if mirrored { [e[3], e[2]] } else { [e[2], e[3]] };
-        worn.fins.push(FinEdge { ends: [e[0], e[1]], opposite, u: [s[0], s[1]], thickness: s[2] });
+        coat_primitive.fins.push(FinEdge { ends: [e[0], e[1]], opposite, u: [s[0], s[1]], thickness: s[2] });
     }
     Ok(())
 }

@@ -30,7 +30,7 @@ pub fn write_coat(asset: &Asset, coat: &Coat, fallback: Fallback, out: &Path) ->
         }
     };
     write::check_target(out, &asset.document.files)?;
-    let mut document = dress(asset, coat, fallback)?;
+    let mut document = with_coat(asset, coat, fallback)?;
     let beside = text && same_folder(out, asset.document.folder.as_deref());
     let notes = if beside { Vec::new() } else { take_images_along(&mut document)? };
     if !text {
@@ -94,7 +94,7 @@ fn take_images_along(document: &mut Document) -> Result<Vec<String>> {
     Ok(notes)
 }
 
-/// Fails where the asset wears a coat already: worth asking before a long bake.
+/// Fails where the asset has a coat already: worth asking before a long bake.
 ///
 /// # Errors
 /// Names the extension.
@@ -102,7 +102,7 @@ pub fn refuse_second(asset: &Asset) -> Result<()> {
     if asset.document.root().get("extensions").is_none_or(|e| e.get(NAME).is_none()) {
         return Ok(());
     }
-    Err(Error::input("the input wears a coat already")
+    Err(Error::input("the input has a coat already")
         .with_file(&asset.document.name)
         .with_field(format!("extensions.{NAME}"))
         .with_found("a coat")
@@ -114,7 +114,7 @@ pub fn refuse_second(asset: &Asset) -> Result<()> {
 ///
 /// # Errors
 /// When the asset has a coat already, or the coat does not fit it.
-pub fn dress(asset: &Asset, coat: &Coat, fallback: Fallback) -> Result<Document> {
+pub fn with_coat(asset: &Asset, coat: &Coat, fallback: Fallback) -> Result<Document> {
     refuse_second(asset)?;
     let mut document = asset.document.clone();
     let mut tiles = Vec::new();

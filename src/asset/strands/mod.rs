@@ -59,7 +59,7 @@ pub fn encode(export: &Export<'_>, format: Format) -> Result<Vec<u8>> {
     }
 }
 
-/// A hair's look at one of its points.
+/// What a hair is like at one of its points.
 struct Point {
     /// Diameter, file units.
     diameter: f32,

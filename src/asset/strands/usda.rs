@@ -28,9 +28,9 @@ fn write(export: &Export<'_>, out: &mut String) -> fmt::Result {
          uniform token[] xformOpOrder = [\"xformOp:translate\"]\n\n    def BasisCurves \"GuardHair\"\n    {{\n"
     )?;
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    for (&point_m, look) in strands.points_m.iter().zip(points(export)) {
-        low = low.min(local(point_m) - 0.5 * look.diameter);
-        high = high.max(local(point_m) + 0.5 * look.diameter);
+    for (&point_m, shape) in strands.points_m.iter().zip(points(export)) {
+        low = low.min(local(point_m) - 0.5 * shape.diameter);
+        high = high.max(local(point_m) + 0.5 * shape.diameter);
     }
     if !strands.is_empty() {
         list(out, "float3[] extent", "", [low, high].map(Triple))?;

@@ -1,9 +1,9 @@
 //! The hair that an atlas' fins show: grown at places of the skin, with what its coat puts back taken out.
 
-use super::Skin;
+use super::AtlasSkin;
 use super::judge::places;
 use crate::coat::hair::TileHair;
-use crate::coat::wear::offset_over_height;
+use crate::coat::primitive::offset_over_height;
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;
@@ -23,8 +23,8 @@ const PLACES: usize = 8;
 /// comb), at the density and in the colour of the preset, and lies as M⁻¹ takes it back, M being the frame that a fin spans:
 /// along the skin, across, and the coat's offset. So length, density and colour come back where a fin stands, by its own vertices.
 /// `None` where nothing grows.
-pub fn grown(skins: &[Skin<'_>], hair: [&Fibre; 2], like: &TileHair, seed: u64) -> Option<TileHair> {
-    let area_m2 = |skin: &Skin<'_>| (0..skin.mesh.triangles.len()).map(|t| skin.mesh.area_m2(t)).sum::<f32>();
+pub fn grown(skins: &[AtlasSkin<'_>], hair: [&Fibre; 2], like: &TileHair, seed: u64) -> Option<TileHair> {
+    let area_m2 = |skin: &AtlasSkin<'_>| (0..skin.mesh.triangles.len()).map(|t| skin.mesh.area_m2(t)).sum::<f32>();
     let areas: Vec<f32> = skins.iter().map(area_m2).collect();
     let total: f32 = areas.iter().sum();
     let mut found = Vec::new();
@@ -78,8 +78,8 @@ struct Strip {
 
 impl Strip {
     /// One of `count` strips that are `edge_m` long, around a place of `skin`, turned by `turn` of a full turn.
-    fn new(skin: &Skin<'_>, triangle: usize, b: Vec3, edge_m: f32, count: usize, turn: f32) -> Self {
-        let Skin { mesh, fields, .. } = *skin;
+    fn new(skin: &AtlasSkin<'_>, triangle: usize, b: Vec3, edge_m: f32, count: usize, turn: f32) -> Self {
+        let AtlasSkin { mesh, fields, .. } = *skin;
         let corners = mesh.triangles[triangle].map(|v| v as usize);
         let mix3 = |of: &dyn Fn(usize) -> Vec3| of(corners[0]) * b.x + of(corners[1]) * b.y + of(corners[2]) * b.z;
         let mix1 = |of: &[f32]| corners.iter().zip(b.to_array()).map(|(&v, b)| of[v] * b).sum::<f32>();

@@ -1,7 +1,7 @@
 //! Hair that grew on the skin, laid into a chart: lean and length removed, as a coat's offsets will put them back.
 
-use super::skirt::Region;
-use crate::coat::wear::offset_over_height;
+use super::chart_region::ChartRegion;
+use crate::coat::primitive::offset_over_height;
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;
@@ -28,7 +28,7 @@ pub fn flatten(
     strands: &Strands,
     ranges: &[Range<usize>],
     (mesh, fields): (&Mesh, &Fields),
-    region: &Region,
+    region: &ChartRegion,
     texel_m: f32,
 ) -> Strands {
     let mut flat = strands.none_alike();

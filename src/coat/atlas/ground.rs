@@ -1,7 +1,7 @@
 //! Undercoat of the skin, laid into a chart: it stands over its roots there, whatever its lean and length.
 
+use super::chart_region::{ChartRegion, ChartTriangle};
 use super::flatten::axes;
-use super::skirt::{Placed, Region};
 use crate::coat::shells::deposit::Voxels;
 use crate::coat::shells::undercoat::Profile;
 use crate::data::fields::Fields;
@@ -53,7 +53,7 @@ impl<'a> Ground<'a> {
     }
 
     /// Adds the undercoat over a region's texels, each the mean over what of it is skin.
-    pub fn add(&self, region: &Region, profile: &Profile, voxels: &mut Voxels, ends: &mut [f32]) {
+    pub fn add(&self, region: &ChartRegion, profile: &Profile, voxels: &mut Voxels, ends: &mut [f32]) {
         let layout = voxels.layout;
         let width = layout.size[0];
         let across = (2.0 * layout.texel_m / self.undercoat.detail_m()).ceil().clamp(1.0, MOST_PLACES) as usize;
@@ -75,7 +75,7 @@ impl<'a> Ground<'a> {
     }
 
     /// What stands at a point of a placed triangle, in texels of its region.
-    fn stand(&self, texel: usize, placed: &Placed, at: Vec2, texel_m: f32) -> Option<Stand> {
+    fn stand(&self, texel: usize, placed: &ChartTriangle, at: Vec2, texel_m: f32) -> Option<Stand> {
         let Self { mesh, fields, .. } = self;
         let corners_m = mesh.corners_m(placed.triangle);
         let [x, y] = axes(corners_m, placed.corners.map(|p| p * texel_m))?;

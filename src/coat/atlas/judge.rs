@@ -6,8 +6,8 @@ use crate::cast::Caster;
 use crate::cast::Geometry;
 use crate::cast::Rays;
 use crate::coat::axes::Stand;
-use crate::coat::judge::Row;
-use crate::coat::wear::offset_over_height;
+use crate::coat::judge::CoverageRow;
+use crate::coat::primitive::offset_over_height;
 use crate::data::coat::{Sampled, Tile};
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
@@ -23,7 +23,7 @@ use crate::math::hash::{combine, unit_f32};
 use crate::math::{Mat3, Vec2, Vec3, orthonormal_basis, sampling};
 use crate::volume::march::content::{Content, Resolution};
 use crate::volume::march::volume::Volume;
-use crate::volume::march::{Journey, Start, Stepping};
+use crate::volume::march::{MarchRay, Start, Stepping};
 use crate::volume::scene::{HairScattering, Scene};
 use crate::volume::shell::locate::within;
 use rayon::prelude::*;
@@ -36,9 +36,9 @@ const BLOCK: (usize, usize) = (4, 3);
 /// Up to so many hairs are grown at once; of more, those near a place for each place anew.
 const AT_ONCE: f32 = 1e6;
 
-/// A skin, what grows on it, and what it wears.
+/// A skin, what grows on it, and what it carries.
 #[derive(Clone, Copy, Debug)]
-pub struct Worn<'a> {
+pub struct CoatedSkin<'a> {
     /// The mesh.
     pub mesh: &'a Mesh,
     /// The groom's fields on it.
@@ -54,10 +54,10 @@ pub struct Worn<'a> {
 }
 
 /// A place on the skin: triangle and barycentric coordinates.
-pub type Place = (usize, Vec3);
+pub type SurfacePoint = (usize, Vec3);
 
 /// `count` places spread by area over the triangles that `accept` takes; none where it takes none.
-pub fn places(mesh: &Mesh, count: usize, seed: u64, accept: impl Fn(usize) -> bool) -> Vec<Place> {
+pub fn places(mesh: &Mesh, count: usize, seed: u64, accept: impl Fn(usize) -> bool) -> Vec<SurfacePoint> {
     let taken: Vec<usize> = (0..mesh.triangles.len()).filter(|&t| accept(t)).collect();
     let sums: Vec<f32> = taken
         .iter()
@@ -76,20 +76,20 @@ pub fn places(mesh: &Mesh, count: usize, seed: u64, accept: impl Fn(usize) -> bo
 }
 
 /// Rows of [`ANGLES_DEG`] for each group of places.
-pub fn surface_tables(worn: &Worn<'_>, groups: &[Vec<Place>]) -> Vec<Vec<Row>> {
-    let stack = Stack::new(worn.tile);
-    let normals = worn.mesh.smooth_normals();
-    let area_m2: f32 = (0..worn.mesh.triangles.len()).map(|t| worn.mesh.area_m2(t)).sum();
-    let all: Vec<usize> = (0..worn.mesh.triangles.len()).collect();
-    let all = (area_m2 * worn.hair[0].density_per_m2 <= AT_ONCE).then(|| worn.grown(&all));
+pub fn surface_tables(coated: &CoatedSkin<'_>, groups: &[Vec<SurfacePoint>]) -> Vec<Vec<CoverageRow>> {
+    let stack = Stack::new(coated.tile);
+    let normals = coated.mesh.smooth_normals();
+    let area_m2: f32 = (0..coated.mesh.triangles.len()).map(|t| coated.mesh.area_m2(t)).sum();
+    let all: Vec<usize> = (0..coated.mesh.triangles.len()).collect();
+    let all = (area_m2 * coated.hair[0].density_per_m2 <= AT_ONCE).then(|| coated.grown(&all));
     let all = all.as_ref().map(caster);
-    let content = worn.content(&normals);
-    let volume = content.as_ref().map(|content| Volume::new(content, worn.subdivisions()));
-    let judge = Judge { worn, stack: &stack, normals: &normals, all: all.as_ref(), volume: volume.as_ref() };
+    let content = coated.content(&normals);
+    let volume = content.as_ref().map(|content| Volume::new(content, coated.subdivisions()));
+    let judge = Judge { coated, stack: &stack, normals: &normals, all: all.as_ref(), volume: volume.as_ref() };
     groups.iter().map(|places| judge.rows(places)).collect()
 }
 
-impl<'a> Worn<'a> {
+impl<'a> CoatedSkin<'a> {
     /// The guard hair of some triangles.
     fn grown(&self, triangles: &[usize]) -> Strands {
         grow::skin::grow_on(self.hair[0], self.mesh, self.fields, combine(self.seed, 1), triangles)
@@ -148,7 +148,7 @@ const OPAQUE_DEPTH: f32 = 12.0;
 const TRIES: u8 = 16;
 
 struct Judge<'a> {
-    worn: &'a Worn<'a>,
+    coated: &'a CoatedSkin<'a>,
     stack: &'a Stack<'a>,
     normals: &'a [Vec3],
     /// All guard hair, where it was grown at once.
@@ -157,9 +157,9 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    fn rows(&self, places: &[Place]) -> Vec<Row> {
+    fn rows(&self, places: &[SurfacePoint]) -> Vec<CoverageRow> {
         // Per place and angle: mean coverage of the block by strands, by the stack, by constant α.
-        let seed = |i: usize| combine(self.worn.seed, i as u64);
+        let seed = |i: usize| combine(self.coated.seed, i as u64);
         let blocks: Vec<[[f32; 3]; 4]> =
             places.par_iter().enumerate().map(|(i, &place)| self.place(place, seed(i))).collect();
         let n = blocks.len().max(1) as f32;
@@ -167,7 +167,7 @@ impl Judge<'_> {
             let mean = |what: usize| blocks.iter().map(|b| b[angle][what]).sum::<f32>() / n;
             let rmse =
                 |what: usize| (blocks.iter().map(|b| (b[angle][what] - b[angle][0]).powi(2)).sum::<f32>() / n).sqrt();
-            Row {
+            CoverageRow {
                 theta_deg,
                 strands: mean(0),
                 stack: mean(1),
@@ -179,8 +179,8 @@ impl Judge<'_> {
         ANGLES_DEG.iter().enumerate().map(row).collect()
     }
 
-    fn place(&self, (triangle, b): Place, key: u64) -> [[f32; 3]; 4] {
-        let Worn { mesh, fields, tile, hair, .. } = *self.worn;
+    fn place(&self, (triangle, b): SurfacePoint, key: u64) -> [[f32; 3]; 4] {
+        let CoatedSkin { mesh, fields, tile, hair, .. } = *self.coated;
         let corners = mesh.triangles[triangle].map(|v| v as usize);
         let mix = |values: [Vec3; 3]| values[0] * b.x + values[1] * b.y + values[2] * b.z;
         let at_m = mix(mesh.corners_m(triangle));
@@ -213,7 +213,7 @@ impl Judge<'_> {
             passes(middle, reach_m)
         };
         let triangles: Vec<usize> = (0..mesh.triangles.len()).filter(|&t| near(t)).collect();
-        let nearby = self.all.is_none().then(|| kept(&self.worn.grown(&triangles), passes));
+        let nearby = self.all.is_none().then(|| kept(&self.coated.grown(&triangles), passes));
         let own = nearby.as_ref().map(caster);
         let caster = self.all.or(own.as_ref());
         views.map(|(direction, far_m)| {
@@ -249,15 +249,15 @@ impl Judge<'_> {
                 let at_m = far_m * f32::from(i) / f32::from(TRIES);
                 let point_m = ray.origin_m + ray.direction * (far_m - at_m);
                 let holds = |&t: &usize| Some((t as u32, within(volume.shell(), t as u32, point_m)?));
-                triangles.iter().find_map(holds).map(|(triangle, place)| Start { at_m, triangle, place })
+                triangles.iter().find_map(holds).map(|(triangle, point)| Start { at_m, triangle, point })
             })
         };
-        let journey = |(i, ray): (usize, &Ray)| {
+        let march_ray = |(i, ray): (usize, &Ray)| {
             let origin_m = ray.origin_m + ray.direction * far_m;
-            Some((i, Journey { origin_m, direction: -ray.direction, start: start(ray)?, far_m }))
+            Some((i, MarchRay { origin_m, direction: -ray.direction, start: start(ray)?, far_m }))
         };
-        let (found, journeys): (Vec<usize>, Vec<Journey>) = rays.iter().enumerate().filter_map(journey).unzip();
-        for (i, depth) in found.into_iter().zip(volume.depths_along(&journeys, &STEPPING, 0.0, OPAQUE_DEPTH).0) {
+        let (found, rays): (Vec<usize>, Vec<MarchRay>) = rays.iter().enumerate().filter_map(march_ray).unzip();
+        for (i, depth) in found.into_iter().zip(volume.depths_along(&rays, &STEPPING, 0.0, OPAQUE_DEPTH).0) {
             depths[i] = depth;
         }
         depths
@@ -265,7 +265,7 @@ impl Judge<'_> {
 
     /// Optical depth of the shells over `triangles` along a ray: by the law, and with each texel's as it is from above.
     fn depths(&self, ray: &Ray, far_m: f32, triangles: &[usize]) -> [f32; 2] {
-        let Worn { mesh, fields, patches, tile, .. } = *self.worn;
+        let CoatedSkin { mesh, fields, patches, tile, .. } = *self.coated;
         let pixel = 1.0 / tile.shells.size as f32;
         let above = Incidence::new(Vec3::NEG_Z, Mat3::IDENTITY, pixel);
         let mut depths = [0.0; 2];

@@ -1,15 +1,15 @@
 //! Shells sampled on the skin itself: every texel of an atlas holds the hair that grows there (`docs/steps/shells.md`, "On
 //! the skin").
 
+pub mod chart_region;
 pub mod fins;
 pub mod flatten;
 mod ground;
 pub mod judge;
-pub mod skirt;
 
 use crate::coat::fins::texture;
 use crate::coat::hair::{TileHair, leaning};
-use crate::coat::shells::deposit::{Layout, Voxels, mean_slopes};
+use crate::coat::shells::deposit::{VoxelLayout, Voxels, mean_slopes};
 use crate::coat::shells::encode::{Raw, encode};
 use crate::coat::shells::undercoat::{self, Profile};
 use crate::coat::shells::{ends, gains, shadow};
@@ -25,10 +25,10 @@ use crate::fur::grow;
 use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::Vec2;
 use crate::math::hash::combine;
+use chart_region::ChartRegion;
 use flatten::{by_triangle, flatten};
 use ground::Ground;
 use rayon::prelude::*;
-use skirt::Region;
 use std::ops::Range;
 
 /// Guard hairs over a texel that are more than it can tell apart: from here on one stands for several.
@@ -42,9 +42,9 @@ const SAMPLES: usize = 4;
 /// Least share of skin in a texel that its hair is divided by.
 const LEAST_SHARE: f32 = 0.25;
 
-/// A skin that wears a part of the atlas.
+/// A skin that carries a part of the atlas.
 #[derive(Clone, Copy, Debug)]
-pub struct Skin<'a> {
+pub struct AtlasSkin<'a> {
     /// The mesh.
     pub mesh: &'a Mesh,
     /// The groom's fields on it.
@@ -75,7 +75,7 @@ impl Thinned {
     }
 
     /// Voxels of it, and what its ends add.
-    fn deposit(&self, layout: Layout, strands: &Strands, slopes: &[Vec2]) -> (Voxels, Vec<f32>) {
+    fn deposit(&self, layout: VoxelLayout, strands: &Strands, slopes: &[Vec2]) -> (Voxels, Vec<f32>) {
         let mut voxels = Voxels::new(layout);
         let mut ends = vec![0.0; layout.texels() * layout.slabs];
         ends::deposit_with_ends(strands, slopes, (self.width_m, self.thinning), &mut voxels, &mut ends);
@@ -100,13 +100,14 @@ impl Filled {
 
 /// Bakes the atlas of `skins`, whose charts share `square`. `guard` and `undercoat` grow on them; `seed` decides about the
 /// square of hair that gains are taken from, and where the hair of the fin texture grows.
-pub fn bake(skins: &[Skin<'_>], square: &Square, hair: [&Fibre; 2], recipe: &TileRecipe, seed: u64) -> Tile {
+pub fn bake(skins: &[AtlasSkin<'_>], square: &Square, hair: [&Fibre; 2], recipe: &TileRecipe, seed: u64) -> Tile {
     let texel_m = square.edge_m / square.texels as f32;
     let guard = Thinned::new(hair[0], texel_m);
     let slabs = recipe.shells.layers as usize - 1;
     let reference = Reference::new(skins, hair, &guard, recipe, texel_m, seed);
     let height_m = reference.hair.height_m;
-    let layout = Layout { toroidal: false, ..Layout::tile(square.texels as usize, slabs, square.edge_m, height_m) };
+    let layout =
+        VoxelLayout { toroidal: false, ..VoxelLayout::tile(square.texels as usize, slabs, square.edge_m, height_m) };
 
     let n = layout.texels();
     let mut all = Filled {
@@ -168,7 +169,7 @@ struct Reference {
 
 impl Reference {
     fn new(
-        skins: &[Skin<'_>],
+        skins: &[AtlasSkin<'_>],
         hair: [&Fibre; 2],
         guard: &Thinned,
         recipe: &TileRecipe,
@@ -184,12 +185,12 @@ impl Reference {
         thin.height_m = full.height_m;
         let lean = leaning(recipe.lean_deg);
         let truth = || {
-            let worn = full.worn(lean);
-            gains::strand_transmittance(worn.scene(), worn.edge_m, worn.height_m, lean)
+            let mapped = full.mapped(lean);
+            gains::strand_transmittance(mapped.scene(), mapped.edge_m, mapped.height_m, lean)
         };
         let stack = || {
             let slopes = mean_slopes(&thin.guard, slabs, full.height_m);
-            let layout = Layout::tile(size, slabs, edge_m, full.height_m);
+            let layout = VoxelLayout::tile(size, slabs, edge_m, full.height_m);
             let (mut voxels, mut ends) = guard.deposit(layout, &thin.guard, &slopes);
             if let Some(medium) = &thin.undercoat {
                 undercoat::add(medium, &slopes, &mut voxels, &mut ends);
@@ -230,7 +231,7 @@ impl Reference {
 
 /// A skin with its hair.
 struct Grown<'a> {
-    skin: &'a Skin<'a>,
+    skin: &'a AtlasSkin<'a>,
     strands: Strands,
     ranges: Vec<Range<usize>>,
     ground: Ground<'a>,
@@ -245,13 +246,13 @@ impl Grown<'_> {
         square: &Square,
         rectangle: [u32; 4],
         own: &[usize],
-        layout: &Layout,
+        layout: &VoxelLayout,
         reference: &Reference,
     ) -> Chart {
-        let Skin { mesh, fields, patches, .. } = *self.skin;
+        let AtlasSkin { mesh, fields, patches, .. } = *self.skin;
         let margin = (reference.reach_m / layout.texel_m).ceil().min(FURTHEST) as u32 + 1;
-        let region = Region::new(mesh, &self.topology, patches, own, square.texels, rectangle, margin);
-        let layout = Layout { size: region.size, ..*layout };
+        let region = ChartRegion::new(mesh, &self.topology, patches, own, square.texels, rectangle, margin);
+        let layout = VoxelLayout { size: region.size, ..*layout };
         let flat = flatten(&self.strands, &self.ranges, (mesh, fields), &region, layout.texel_m);
         let (mut voxels, mut ends) = guard.deposit(layout, &flat, &reference.slopes);
         let skin_share: Vec<f32> = (0..layout.texels()).map(|i| skin_share(&region, i)).collect();
@@ -274,7 +275,7 @@ impl Grown<'_> {
 }
 
 /// How much of a texel is skin.
-fn skin_share(region: &Region, texel: usize) -> f32 {
+fn skin_share(region: &ChartRegion, texel: usize) -> f32 {
     let (x, y) = (texel % region.size[0], texel / region.size[0]);
     let at = |i: usize| (i as f32 + 0.5) / SAMPLES as f32;
     let points = (0..SAMPLES * SAMPLES)

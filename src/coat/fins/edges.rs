@@ -6,7 +6,7 @@ use crate::math::hash::{combine, unit_f32};
 use std::collections::BTreeMap;
 
 /// A coat's surface as fins need it.
-pub struct Surface<'a> {
+pub struct FinSurface<'a> {
     /// Coat vertex positions, m.
     pub positions_m: &'a [Vec3],
     /// Which coat vertices are one point.
@@ -22,7 +22,7 @@ type Face = ([u32; 2], u32, f32);
 ///
 /// Each triangle gives a third of its area to each of its edges, so a fin's thickness is that area over the edge's
 /// length and all fins together hold the coat once.
-pub fn edges(surface: &Surface<'_>, texture: &FinTexture, seed: u64) -> Vec<FinEdge> {
+pub fn edges(surface: &FinSurface<'_>, texture: &FinTexture, seed: u64) -> Vec<FinEdge> {
     // Edge of the welded surface → its first sighting: coat vertices, opposite vertex, area; then a second face.
     let mut faces: BTreeMap<[u32; 2], Vec<Face>> = BTreeMap::new();
     for &[a, b, c] in surface.triangles {

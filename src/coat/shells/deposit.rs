@@ -10,7 +10,7 @@ const BATCHES: usize = 4;
 
 /// How voxels lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Layout {
+pub struct VoxelLayout {
     /// Texels along x and y.
     pub size: [usize; 2],
     /// Edge of a texel, m.
@@ -23,7 +23,7 @@ pub struct Layout {
     pub slab_m: f32,
 }
 
-impl Layout {
+impl VoxelLayout {
     /// A tile with `size` texels along its edge, its stack `height_m` high.
     pub fn tile(size: usize, slabs: usize, edge_m: f32, height_m: f32) -> Self {
         let (texel_m, slab_m) = (edge_m / size as f32, height_m / slabs as f32);
@@ -50,7 +50,7 @@ impl Layout {
 #[derive(Clone, Debug)]
 pub struct Voxels {
     /// How they lie.
-    pub layout: Layout,
+    pub layout: VoxelLayout,
     /// A = Σ ℓ D / V, 1/m.
     pub extinction: Vec<f32>,
     /// Am = Σ ℓ D t / V, 1/m.
@@ -61,7 +61,7 @@ pub struct Voxels {
 
 impl Voxels {
     /// Empty voxels.
-    pub fn new(layout: Layout) -> Self {
+    pub fn new(layout: VoxelLayout) -> Self {
         let n = layout.texels() * layout.slabs;
         Self { layout, extinction: vec![0.0; n], tangent: vec![Vec3::ZERO; n], colour: vec![Vec3::ZERO; n] }
     }
@@ -75,7 +75,7 @@ impl Voxels {
 
     /// Strands deposited into empty voxels, a fixed number of batches side by side, so that the sums come
     /// out the same for any number of threads. See [`Self::deposit`].
-    pub fn deposited(layout: Layout, strands: &Strands, slopes: &[Vec2]) -> Self {
+    pub fn deposited(layout: VoxelLayout, strands: &Strands, slopes: &[Vec2]) -> Self {
         let batch = strands.len().div_ceil(BATCHES).max(1);
         let batches: Vec<Self> = (0..BATCHES)
             .into_par_iter()
@@ -91,33 +91,33 @@ impl Voxels {
         sum
     }
 
-    /// Adds `weight` (1/m) of a piece to a texel of its slab.
-    pub fn put(&mut self, piece: &Piece, texel: usize, weight: f32) {
-        let index = piece.slab * self.layout.texels() + texel;
+    /// Adds `weight` (1/m) of a segment to a texel of its slab.
+    pub fn put(&mut self, segment: &VoxelSegment, texel: usize, weight: f32) {
+        let index = segment.slab * self.layout.texels() + texel;
         self.extinction[index] += weight;
-        self.tangent[index] += weight * piece.direction;
-        self.colour[index] += weight * piece.colour;
+        self.tangent[index] += weight * segment.direction;
+        self.colour[index] += weight * segment.colour;
     }
 
-    /// Deposits the strands of `range`. Each piece goes where the mean strand through it, of slope `slopes[slab]`, crosses the slab's
+    /// Deposits the strands of `range`. Each segment goes where the mean strand through it, of slope `slopes[slab]`, crosses the slab's
     /// middle, spread over a square as wide as the hair (equal in area to its cross-section).
     fn deposit(&mut self, strands: &Strands, range: Range<usize>, slopes: &[Vec2]) {
         let layout = self.layout;
         for strand in range {
-            pieces(strands, strand, &layout, slopes, |piece| {
-                let width_m = piece.width_m(0.0);
-                let amount = piece.length_m * piece.diameter_m * piece.opacity;
+            segments(strands, strand, &layout, slopes, |segment| {
+                let width_m = segment.width_m(0.0);
+                let amount = segment.length_m * segment.diameter_m * segment.opacity;
                 let per_volume = amount / (layout.texel_m * layout.texel_m * layout.slab_m);
-                splat(&layout, piece.at_m, width_m, per_volume, |texel, weight| {
-                    self.put(piece, texel, weight);
+                splat(&layout, segment.at_m, width_m, per_volume, |texel, weight| {
+                    self.put(segment, texel, weight);
                 });
             });
         }
     }
 }
 
-/// A short piece of a strand, within one slab (nearly).
-pub struct Piece {
+/// A short segment of a strand, within one slab (nearly).
+pub struct VoxelSegment {
     /// The slab.
     pub slab: usize,
     /// Where the mean strand through it crosses the slab's middle, m.
@@ -138,15 +138,21 @@ pub struct Piece {
     pub colour: Vec3,
 }
 
-impl Piece {
+impl VoxelSegment {
     /// Edge of the square that it is spread over: equal in area to its cross-section, or `least_m`.
     pub fn width_m(&self, least_m: f32) -> f32 {
         (0.886_227 * self.diameter_m).max(least_m)
     }
 }
 
-/// Cuts a strand into pieces short enough that each lies in one slab and moves by at most half a texel.
-pub fn pieces(strands: &Strands, strand: usize, layout: &Layout, slopes: &[Vec2], mut each: impl FnMut(&Piece)) {
+/// Cuts a strand into segments short enough that each lies in one slab and moves by at most half a texel.
+pub fn segments(
+    strands: &Strands,
+    strand: usize,
+    layout: &VoxelLayout,
+    slopes: &[Vec2],
+    mut each: impl FnMut(&VoxelSegment),
+) {
     let segments = strands.points_per_strand - 1;
     let root_m = 2.0 * strands.root_radius_m[strand];
     for (i, pair) in strands.points_of_m(strand).windows(2).enumerate() {
@@ -164,7 +170,7 @@ pub fn pieces(strands: &Strands, strand: usize, layout: &Layout, slopes: &[Vec2]
             let at = pair[0] + along * t;
             let slab = ((at.z / layout.slab_m) as usize).min(layout.slabs - 1);
             let middle_m = (slab as f32 + 0.5) * layout.slab_m;
-            each(&Piece {
+            each(&VoxelSegment {
                 slab,
                 at_m: at.truncate() - slopes[slab] * (at.z - middle_m),
                 length_m: along.length() / steps,
@@ -180,7 +186,7 @@ pub fn pieces(strands: &Strands, strand: usize, layout: &Layout, slopes: &[Vec2]
 }
 
 /// Spreads `amount` over a square of edge `width_m`: gives `each` every texel with what it covers of it.
-pub fn splat(layout: &Layout, at_m: Vec2, width_m: f32, amount: f32, mut each: impl FnMut(usize, f32)) {
+pub fn splat(layout: &VoxelLayout, at_m: Vec2, width_m: f32, amount: f32, mut each: impl FnMut(usize, f32)) {
     let texel_m = layout.texel_m;
     let low = (at_m - 0.5 * width_m) / texel_m;
     let high = (at_m + 0.5 * width_m) / texel_m;

@@ -1,7 +1,7 @@
 //! End opacity κ: what looking down the mean strand adds to the sides of the hairs. Each cross-section counts once over
 //! the stack, in the slab where it is first hit.
 
-use super::deposit::{Voxels, pieces, splat};
+use super::deposit::{Voxels, segments, splat};
 use crate::cast::Caster;
 use crate::cast::Geometry;
 use crate::cast::Rays;
@@ -87,14 +87,15 @@ pub fn deposit_with_ends(
     let per_area = 0.25 * std::f32::consts::PI / (thinning * layout.texel_m * layout.texel_m);
     let per_volume = 1.0 / (layout.texel_m * layout.texel_m * layout.slab_m);
     for strand in 0..strands.len() {
-        pieces(strands, strand, &layout, slopes, |piece| {
-            let (low_m, high_m) = (piece.diameter_m + 0.5 * piece.taper_m, piece.diameter_m - 0.5 * piece.taper_m);
-            let above_m = if piece.tip { 0.0 } else { high_m };
-            let end = per_area * piece.opacity * (low_m * low_m - above_m * above_m).max(0.0);
-            let side = per_volume * piece.length_m * piece.diameter_m * piece.opacity;
-            splat(&layout, piece.at_m, piece.width_m(least_width_m), 1.0, |texel, share| {
-                voxels.put(piece, texel, side * share);
-                ends[piece.slab * layout.texels() + texel] += end * share;
+        segments(strands, strand, &layout, slopes, |segment| {
+            let (low_m, high_m) =
+                (segment.diameter_m + 0.5 * segment.taper_m, segment.diameter_m - 0.5 * segment.taper_m);
+            let above_m = if segment.tip { 0.0 } else { high_m };
+            let end = per_area * segment.opacity * (low_m * low_m - above_m * above_m).max(0.0);
+            let side = per_volume * segment.length_m * segment.diameter_m * segment.opacity;
+            splat(&layout, segment.at_m, segment.width_m(least_width_m), 1.0, |texel, share| {
+                voxels.put(segment, texel, side * share);
+                ends[segment.slab * layout.texels() + texel] += end * share;
             });
         });
     }

@@ -35,7 +35,7 @@ fn along_edge(theta_deg: f32, n: usize) -> usize {
     if theta_deg == 0.0 { 3 * n } else { n }
 }
 
-/// Mean transmittance at each of [`GAIN_ANGLES_DEG`] (in the tile) of strands worn under `skin_from_tile`, which reach
+/// Mean transmittance at each of [`GAIN_ANGLES_DEG`] (in the tile) of strands mapped by `skin_from_tile`, which reach
 /// up to `top_m` there.
 pub fn strand_transmittance(scene: Geometry<'_>, edge_m: f32, top_m: f32, skin_from_tile: Mat3) -> [f64; 9] {
     let caster = Caster::new(scene);
@@ -60,7 +60,7 @@ pub fn strand_transmittance(scene: Geometry<'_>, edge_m: f32, top_m: f32, skin_f
     })
 }
 
-/// Fits the gains of every mip of `tile`, worn under `skin_from_tile`, to the truth.
+/// Fits the gains of every mip of `tile`, mapped by `skin_from_tile`, to the truth.
 pub fn fit(tile: &Tile, truth: &[f64; 9], skin_from_tile: Mat3) -> Vec<[f32; 9]> {
     let stack = Stack::new(tile);
     (0..stack.mips())

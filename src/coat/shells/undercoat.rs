@@ -1,6 +1,6 @@
 //! Undercoat into voxels: no hairs, but what of the volume lies in each texel of a slab (`docs/steps/shells.md`).
 
-use super::deposit::{Layout, Voxels};
+use super::deposit::{VoxelLayout, Voxels};
 use crate::math::{Vec2, Vec3};
 use crate::volume::medium::Medium;
 use std::f32::consts::FRAC_PI_4;
@@ -11,14 +11,14 @@ const PARTS: usize = 4;
 /// Undercoat by height where it is as dense as the preset says: what stands over every texel alike.
 #[derive(Clone, Debug)]
 pub struct Profile {
-    parts: Vec<Part>,
+    parts: Vec<SlabPart>,
     /// Length of the mean direction, so that the law is exact along the hair and across it.
     upright: f32,
 }
 
 /// A part of a slab's height.
 #[derive(Clone, Copy, Debug)]
-pub struct Part {
+pub struct SlabPart {
     /// The slab.
     slab: usize,
     /// Height of its middle over the tallest hair's.
@@ -34,7 +34,7 @@ pub struct Part {
 
 impl Profile {
     /// Of the slabs of a layout, whose textures show hair without its lean.
-    pub fn new(medium: &Medium, layout: &Layout) -> Self {
+    pub fn new(medium: &Medium, layout: &VoxelLayout) -> Self {
         let undercoat = medium.undercoat();
         let part_m = layout.slab_m / PARTS as f32;
         let per_m = undercoat.density_per_m2 * undercoat.stretch * undercoat.diameter_m / PARTS as f32;
@@ -42,7 +42,7 @@ impl Profile {
         let part = |i: usize| {
             let (slab, n) = (i / PARTS, i % PARTS);
             let [low, t, high] = [0.0, 0.5, 1.0].map(|part| (i as f32 + part) * part_m / undercoat.height_m);
-            Part {
+            SlabPart {
                 slab,
                 t,
                 above_m: (n as f32 + 0.5 - 0.5 * PARTS as f32) * part_m,
@@ -57,7 +57,14 @@ impl Profile {
     }
 
     /// Adds what stands over a texel: `amount` times as much as the preset says in each part, in colour times `tint`.
-    pub fn fill(&self, voxels: &mut Voxels, ends: &mut [f32], texel: usize, tint: Vec3, amount: impl Fn(&Part) -> f32) {
+    pub fn fill(
+        &self,
+        voxels: &mut Voxels,
+        ends: &mut [f32],
+        texel: usize,
+        tint: Vec3,
+        amount: impl Fn(&SlabPart) -> f32,
+    ) {
         for part in &self.parts {
             let amount = amount(part);
             let v = part.slab * voxels.layout.texels() + texel;

@@ -1,7 +1,7 @@
 //! The law of a shell stack: what a stored texel means, how opaque a slab is along a ray, and how it is fetched, as a
 //! fragment shader does at one pixel. `docs/extension/README.md` specifies it; `shaders/shared/coat.wgsl` is its twin.
 //!
-//! A tile is worn sheared: a point (x, y, z) of the tile sits at x·X + y·Y + z·O of the skin's frame, where X and Y are
+//! A tile lies sheared on the skin: a point (x, y, z) of the tile sits at x·X + y·Y + z·O of the skin's frame, where X and Y are
 //! unit tangents and O is the coat's offset over the stack's height. Hair keeps its diameter under that map, so the
 //! medium changes with it (`docs/steps/shells.md`). X is the skin's own direction, whichever way the texture lies there:
 //! where a patch is stretched or turned, its picture is, and not the medium.

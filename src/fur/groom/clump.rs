@@ -6,14 +6,14 @@ use crate::math::hash::{combine, unit_f32};
 
 /// A grid of clump centres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grid {
+pub struct ClumpGrid {
     /// Edge of a cell: the mean distance between centres, m.
     pub spacing_m: f32,
     /// Cells after which it repeats along x and along y; none in space.
     pub period: Option<f32>,
 }
 
-impl Grid {
+impl ClumpGrid {
     /// A grid that goes on without end.
     pub fn in_space(spacing_m: f32) -> Self {
         Self { spacing_m, period: None }
@@ -55,7 +55,7 @@ pub struct Around {
     first: Vec3,
     count: [usize; 3],
     centres_m: Vec<Vec3>,
-    grid: Grid,
+    grid: ClumpGrid,
 }
 
 impl Around {
@@ -63,7 +63,7 @@ impl Around {
     const MOST: usize = 1024;
 
     /// Centres around the triangle between `corners_m`; none are kept where there are too many.
-    pub fn new(corners_m: &[Vec3; 3], grid: Grid) -> Self {
+    pub fn new(corners_m: &[Vec3; 3], grid: ClumpGrid) -> Self {
         let [a, b, c] = corners_m;
         let first = (a.min(*b).min(*c) / grid.spacing_m).floor() - 1.0;
         let last = (a.max(*b).max(*c) / grid.spacing_m).floor() + 1.0;
@@ -81,7 +81,7 @@ impl Around {
         around
     }
 
-    /// As [`Grid::to_centre_m`].
+    /// As [`ClumpGrid::to_centre_m`].
     pub fn to_centre_m(&self, root_m: Vec3) -> Vec3 {
         let at = (root_m / self.grid.spacing_m).floor() - self.first;
         let [x, y, z] = at.to_array().map(|v| v as usize);
@@ -119,7 +119,7 @@ impl Around {
 #[derive(Clone, Copy, Debug)]
 pub struct Nearby {
     home: Vec3,
-    grid: Option<Grid>,
+    grid: Option<ClumpGrid>,
     centres_m: [Vec3; 27],
 }
 
@@ -131,7 +131,7 @@ impl Default for Nearby {
 
 impl Nearby {
     /// The centres of cell `home`, which has whole coordinates, and of the cells around it, m.
-    pub fn centres_m(&mut self, home: Vec3, grid: &Grid) -> &[Vec3; 27] {
+    pub fn centres_m(&mut self, home: Vec3, grid: &ClumpGrid) -> &[Vec3; 27] {
         if home != self.home || self.grid != Some(*grid) {
             (self.home, self.grid) = (home, Some(*grid));
             self.centres_m = grid.centres_m(home);

@@ -90,7 +90,7 @@ fn fault(field: String, found: impl std::fmt::Display, expected: &str) -> Error 
     Error::usage("a preset value is out of range").with_field(field).with_found(found).with_expected(expected)
 }
 
-fn check_place(field: String, place: Place) -> Result<()> {
+fn check_point(field: String, place: Place) -> Result<()> {
     match place {
         Place::Relative(p) if !p.iter().all(|x| OUTSIDE.contains(x)) => {
             Err(fault(format!("{field}.relative"), format!("{p:?}"), "three shares of the bounding box, -0.5 to 1.5")
@@ -120,7 +120,7 @@ impl Whorl {
     /// # Errors
     /// Names the key out of range.
     pub fn check(&self, field: &str) -> Result<()> {
-        check_place(format!("{field}.at"), self.at)?;
+        check_point(format!("{field}.at"), self.at)?;
         check_reach(field.to_owned(), self.reach)?;
         if !(-180.0..=180.0).contains(&self.spin_deg) {
             return Err(fault(format!("{field}.spin_deg"), self.spin_deg, "a number from -180 to 180"));
@@ -146,7 +146,7 @@ impl Stroke {
             }
         }
         for (i, &place) in places.iter().enumerate() {
-            check_place(format!("{field}.points[{i}]"), place)?;
+            check_point(format!("{field}.points[{i}]"), place)?;
         }
         check_reach(field.to_owned(), self.reach)
     }

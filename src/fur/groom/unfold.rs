@@ -25,7 +25,7 @@ const SHORTER: f32 = 0.9;
 const MOST_SHORTENINGS: usize = 16;
 
 /// What stands around the places of a skin: vertices that differ by seams only are one.
-struct Skin<'a> {
+struct SkinGraph<'a> {
     mesh: &'a Mesh,
     height_m: f32,
     triangles: Vec<[u32; 3]>,
@@ -43,7 +43,7 @@ pub fn unfold(mesh: &Mesh, normals: &[Vec3], height_m: f32, lean: &mut [Vec3], l
             around[v as usize].extend([p, q]);
         }
     }
-    let skin = Skin { mesh, height_m, triangles, around };
+    let skin = SkinGraph { mesh, height_m, triangles, around };
     for round in 0..ROUNDS {
         let crossing = skin.crossing(lean, length);
         if crossing.is_empty() {
@@ -70,7 +70,7 @@ pub fn unfold(mesh: &Mesh, normals: &[Vec3], height_m: f32, lean: &mut [Vec3], l
     }
 }
 
-impl Skin<'_> {
+impl SkinGraph<'_> {
     /// Triangles over which hair crosses.
     fn crossing(&self, lean: &[Vec3], length: &[f32]) -> Vec<[u32; 3]> {
         let crosses = |corners: &[u32; 3]| {

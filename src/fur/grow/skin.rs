@@ -4,7 +4,7 @@ use super::{course, empty, individual};
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::data::strands::{Root, Strands};
-use crate::fur::groom::clump::{Around, Grid};
+use crate::fur::groom::clump::{Around, ClumpGrid};
 use crate::fur::groom::fibre::Fibre;
 use crate::math::hash::{combine, unit_f32};
 use crate::math::split::cut;
@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 /// Grows one kind of hair on the whole mesh.
 ///
-/// Each triangle decides its own count and roots from its index, so order and threads do not matter. A posed mesh wears
+/// Each triangle decides its own count and roots from its index, so order and threads do not matter. A posed mesh carries
 /// the hairs of its rest pose: as many, with the same ids, lengths and shapes.
 pub fn grow(fibre: &Fibre, mesh: &Mesh, fields: &Fields, seed: u64) -> Strands {
     let all: Vec<usize> = (0..mesh.triangles.len()).collect();
@@ -128,7 +128,7 @@ impl Ground {
             length: corners.map(|v| fields.length[v]),
             clump: corners.map(|v| fields.clump[v]),
             posed_from_rest: mesh.posed_from_rest(t),
-            centres: Around::new(&rest_m, Grid::in_space(fibre.shape.clump.spacing_mm * 1e-3)),
+            centres: Around::new(&rest_m, ClumpGrid::in_space(fibre.shape.clump.spacing_mm * 1e-3)),
         }
     }
 

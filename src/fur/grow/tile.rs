@@ -2,7 +2,7 @@
 
 use super::{course, empty, individual};
 use crate::data::strands::{Root, Strands};
-use crate::fur::groom::clump::Grid;
+use crate::fur::groom::clump::ClumpGrid;
 use crate::fur::groom::fibre::Fibre;
 use crate::math::hash::{combine, mix};
 use crate::math::{Vec3, sampling};
@@ -14,7 +14,7 @@ pub fn grow(fibre: &Fibre, edge_m: f32, seed: u64) -> Strands {
     let count = (fibre.density_per_m2 * edge_m * edge_m).round() as u64;
     let mut strands = empty(fibre, count as usize);
     let mut points = vec![Vec3::ZERO; strands.points_per_strand];
-    let clumps = Grid::on_torus(fibre.shape.clump.spacing_mm * 1e-3, edge_m);
+    let clumps = ClumpGrid::on_torus(fibre.shape.clump.spacing_mm * 1e-3, edge_m);
     for i in 0..count {
         let root = sampling::r2(i, mix(seed)) * edge_m;
         let key = combine(seed, i);

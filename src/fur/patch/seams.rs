@@ -25,7 +25,7 @@ pub const WINDOWS: usize = 2000;
 
 /// Where a window lies and from where it is seen. Both sides of an edge share normal, azimuth and the skin's vertices.
 #[derive(Clone, Debug)]
-pub struct Place {
+pub struct SeamPoint {
     /// Skin vertices of the edge, and how far along it the window's middle is, 0 … 1.
     pub edge: ([u32; 2], f32),
     /// How the skin runs as u and as v grow, as it lies around `normal`, over the tile's edge: unit vectors at right angles
@@ -42,7 +42,7 @@ pub struct Place {
 /// Measures the seams of several `sets` of patches on `mesh` that differ in their coordinates only, each against fake borders
 /// of its own, for tiles of `tile_edge_m` with `texels` along an edge.
 ///
-/// `look` gives what is seen at each coordinate of a place in one of the sets, in three views (say luminance at 0, 45 and 75°
+/// `seen` gives what is seen at each coordinate of a place in one of the sets, in three views (say luminance at 0, 45 and 75°
 /// to the normal). So many `windows` lie along seams, and as many along fake borders.
 pub fn compare_seams<const N: usize>(
     mesh: &Mesh,
@@ -50,7 +50,7 @@ pub fn compare_seams<const N: usize>(
     tile_edge_m: f32,
     texels: u32,
     windows: usize,
-    look: impl Fn(usize, &Place) -> Vec<[f32; 3]> + Sync,
+    seen: impl Fn(usize, &SeamPoint) -> Vec<[f32; 3]> + Sync,
 ) -> [Seams; N] {
     let topology = Topology::new(&mesh.triangles, |v| mesh.position_class[v as usize]);
     let faces = Face::all(mesh);
@@ -63,7 +63,7 @@ pub fn compare_seams<const N: usize>(
             let chance = combine(0x5ea3, i as u64);
             let moved = Vec2::new(unit_f32(combine(chance, 0)), unit_f32(combine(chance, 1)));
             let turn = unit_f32(combine(chance, 2)) * std::f32::consts::TAU;
-            let window = |side, moved| Window::of(&look(set, &strips.place(edge, side, along, turn, moved)));
+            let window = |side, moved| Window::of(&seen(set, &strips.place(edge, side, along, turn, moved)));
             [window(0, Vec2::ZERO), window(1, if fake { moved } else { Vec2::ZERO })]
         };
         let seen: Vec<[Window; 2]> = strips.spread(edges, windows).into_par_iter().enumerate().map(sides).collect();
@@ -139,7 +139,7 @@ impl Strips<'_> {
     }
 
     /// The window on `side` of `edge` inside that triangle's plane; where the triangle is narrower, its map goes on.
-    fn place(&self, edge: &Edge, side: usize, along: f64, turn: f32, moved: Vec2) -> Place {
+    fn place(&self, edge: &Edge, side: usize, along: f64, turn: f32, moved: Vec2) -> SeamPoint {
         let (t, k) = (edge.edges[side] / 3, edge.edges[side] % 3);
         let face = &self.faces[t];
         let flat = face.corners_m();
@@ -167,7 +167,7 @@ impl Strips<'_> {
             let world = if scale == 0.0 { DVec3::ZERO } else { (face.axes[0] * d.x + face.axes[1] * d.y) / scale };
             Quat::from_rotation_arc(self.normal(t).as_vec3(), normal) * world.as_vec3()
         };
-        Place {
+        SeamPoint {
             edge: (ends, along as f32),
             axes: [lie(DVec2::new(y.y, -x.y)), lie(DVec2::new(-y.x, x.x))],
             normal,

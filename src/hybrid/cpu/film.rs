@@ -3,7 +3,7 @@
 use crate::data::film::Film;
 use crate::hybrid::resolve::Pixel;
 use crate::math::Vec3;
-use crate::volume::bins::{Grid, TILE};
+use crate::volume::bins::{TILE, TileGrid};
 use std::mem::take;
 use std::ops::AddAssign;
 use std::ops::Range;
@@ -49,7 +49,7 @@ pub(in crate::hybrid) fn add<T: AddAssign>(layer: &mut [T], at: usize, value: T)
 }
 
 /// The rows of tiles of a band; of `samples` along a pixel's edge, which divide a tile.
-pub(super) fn film_rows<'a>(film: &'a mut Film, grid: &Grid, samples: usize) -> Vec<FilmRows<'a>> {
+pub(super) fn film_rows<'a>(film: &'a mut Film, grid: &TileGrid, samples: usize) -> Vec<FilmRows<'a>> {
     let (width, edge) = (film.width, TILE / samples);
     let pixels = grid.first_row * edge * width..((grid.first_row + grid.rows) * edge).min(film.height) * width;
     let mut radiance = rows(&mut film.radiance, &pixels, edge * width, grid.rows);

@@ -1,7 +1,7 @@
 //! The fragments of guard hair in one tile, pixel by pixel, each in its order of depth.
 
 use crate::hybrid::resolve::{HIDDEN, settle};
-use crate::hybrid::strands::{Fragment, Streak};
+use crate::hybrid::strands::{Fragment, RibbonRow};
 use crate::math::Vec3;
 use crate::math::lanes::{self, MOST, Row, Vec3Row};
 use crate::volume::bins::TILE;
@@ -13,15 +13,15 @@ const BLOCK: usize = 8;
 /// Blocks along a tile's edge.
 const BLOCKS: usize = TILE / BLOCK;
 
-/// Fragments of a tile: first gathered as they come, nearest pieces first, then settled pixel by pixel.
+/// Fragments of a tile: first gathered as they come, nearest segments first, then settled pixel by pixel.
 pub(super) struct Gathered {
-    /// Pieces of which something may be seen.
-    pieces: Vec<u32>,
-    strokes: Vec<Stroke>,
-    /// What fragments show, and where along the hair each streak lies, in [0, 1]; longer than `streak_count` says.
-    streaks: Vec<Streak>,
+    /// Segments of which something may be seen.
+    segments: Vec<u32>,
+    surfaces: Vec<SegmentSurface>,
+    /// What fragments show, and where along the hair each ribbon row lies, in [0, 1]; longer than `ribbon row_count` says.
+    ribbon_rows: Vec<RibbonRow>,
     along: Vec<f32>,
-    streak_count: usize,
+    ribbon_row_count: usize,
     /// Fragments as they came; longer than `count` says.
     loose: Vec<Fragment>,
     /// Where each of them falls.
@@ -39,9 +39,9 @@ pub(super) struct Gathered {
     hidden: f32,
 }
 
-/// What all fragments of a piece have in common.
+/// What all fragments of a segment have in common.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stroke {
+pub(super) struct SegmentSurface {
     /// Direction of the hair.
     pub(super) tangent: Vec3,
     /// Colour that multiplies the profile's ramp.
@@ -67,11 +67,11 @@ impl Default for Gathered {
     fn default() -> Self {
         let fill = Fill { limit_m: 0.0, clear_m: 0.0, through: 1.0, last_m: 0.0, count: 0 };
         Self {
-            pieces: Vec::new(),
-            strokes: Vec::new(),
-            streaks: Vec::new(),
+            segments: Vec::new(),
+            surfaces: Vec::new(),
+            ribbon_rows: Vec::new(),
             along: Vec::new(),
-            streak_count: 0,
+            ribbon_row_count: 0,
             loose: Vec::new(),
             places: Vec::new(),
             count: 0,
@@ -90,9 +90,9 @@ impl Gathered {
     /// that before which everything lies before the skin. A front that lets through less than `opaque` hides what is behind it.
     pub(super) fn begin(&mut self, opaque: f32, limits_m: impl Fn(usize) -> [f32; 2]) {
         self.hidden = HIDDEN * opaque;
-        self.pieces.clear();
-        self.strokes.clear();
-        (self.count, self.streak_count) = (0, 0);
+        self.segments.clear();
+        self.surfaces.clear();
+        (self.count, self.ribbon_row_count) = (0, 0);
         for (at, fill) in self.pixels.iter_mut().enumerate() {
             let [limit_m, clear_m] = limits_m(at);
             *fill = Fill { limit_m, clear_m, through: 1.0, last_m: 0.0, count: 0 };
@@ -151,7 +151,7 @@ impl Gathered {
             self.count += 1;
             fill.count += 1;
             fill.last_m = if z_m > fill.last_m { z_m } else { fill.last_m };
-            // Pieces of one hair will be joined, which hides no less than one after the other.
+            // Segments of one hair will be joined, which hides no less than one after the other.
             fill.through *= 1.0 - fragment.alpha();
             if fill.through < self.hidden {
                 fill.limit_m = if fill.last_m < fill.limit_m { fill.last_m } else { fill.limit_m };
@@ -159,70 +159,70 @@ impl Gathered {
         }
     }
 
-    /// The number of the next streak.
+    /// The number of the next ribbon row.
     #[inline(always)]
-    pub(super) fn next_streak(&self) -> u32 {
-        self.streak_count as u32
+    pub(super) fn next_ribbon_row(&self) -> u32 {
+        self.ribbon_row_count as u32
     }
 
-    /// Says what the fragments of the next `count` streaks of `stroke` show, at most [`MOST`], and where along the hair they lie.
+    /// Says what the fragments of the next `count` ribbon rows of `surface` show, at most [`MOST`], and where along the hair they lie.
     #[inline(always)]
-    pub(super) fn show(&mut self, radiance: &Vec3Row, s: &Row, stroke: u32, count: usize) {
-        let at = self.streak_count;
-        if self.streaks.len() < at + MOST {
-            self.streaks.resize(2 * (at + MOST), Streak::default());
-            self.along.resize(self.streaks.len(), 0.0);
+    pub(super) fn show(&mut self, radiance: &Vec3Row, s: &Row, surface: u32, count: usize) {
+        let at = self.ribbon_row_count;
+        if self.ribbon_rows.len() < at + MOST {
+            self.ribbon_rows.resize(2 * (at + MOST), RibbonRow::default());
+            self.along.resize(self.ribbon_rows.len(), 0.0);
         }
         // All lanes are written, which is quicker than to count.
-        for (lane, streak) in self.streaks[at..at + MOST].iter_mut().enumerate() {
-            *streak = Streak { radiance: radiance.lane(lane), stroke };
+        for (lane, ribbon_row) in self.ribbon_rows[at..at + MOST].iter_mut().enumerate() {
+            *ribbon_row = RibbonRow { radiance: radiance.lane(lane), surface };
         }
         self.along[at..at + MOST].copy_from_slice(&s.0);
-        self.streak_count = at + count;
+        self.ribbon_row_count = at + count;
     }
 
-    /// The number of the next stroke.
+    /// The number of the next surface.
     #[inline(always)]
-    pub(super) fn next_stroke(&self) -> u32 {
-        self.pieces.len() as u32
+    pub(super) fn next_surface(&self) -> u32 {
+        self.segments.len() as u32
     }
 
-    /// Says of which piece the fragments of the next stroke are.
+    /// Says of which segment the fragments of the next surface are.
     #[inline(always)]
-    pub(super) fn keep_stroke(&mut self, piece: u32) {
-        self.pieces.push(piece);
+    pub(super) fn keep_surface(&mut self, segment: u32) {
+        self.segments.push(segment);
     }
 
-    /// Notes what the pieces look like.
-    pub(super) fn face(&mut self, stroke: impl Fn(u32) -> Stroke) {
-        self.strokes.extend(self.pieces.iter().map(|&piece| stroke(piece)));
+    /// Notes what the segments look like.
+    pub(super) fn face(&mut self, surface: impl Fn(u32) -> SegmentSurface) {
+        self.surfaces.extend(self.segments.iter().map(|&segment| surface(segment)));
     }
 
     /// What a fragment shows.
     #[inline(always)]
-    pub(super) fn streak(&self, fragment: &Fragment) -> &Streak {
-        &self.streaks[fragment.streak as usize]
+    pub(super) fn ribbon_row(&self, fragment: &Fragment) -> &RibbonRow {
+        &self.ribbon_rows[fragment.ribbon_row as usize]
     }
 
     /// Lets memory bring what a pixel's fragments show.
     #[inline(always)]
     pub(super) fn call(&self, pixel: usize) {
-        self.of(pixel).iter().for_each(|fragment| lanes::prefetch(self.streak(fragment)));
+        self.of(pixel).iter().for_each(|fragment| lanes::prefetch(self.ribbon_row(fragment)));
     }
 
     /// Where along its hair a fragment lies, in [0, 1].
     #[inline(always)]
     pub(super) fn along(&self, fragment: &Fragment) -> f32 {
-        self.along[fragment.streak as usize]
+        self.along[fragment.ribbon_row as usize]
     }
 
-    /// The piece that a streak belongs to.
+    /// The segment that a ribbon row belongs to.
     #[inline(always)]
-    pub(super) fn stroke(&self, streak: &Streak) -> &Stroke {
-        &self.strokes[streak.stroke as usize]
+    pub(super) fn surface(&self, ribbon_row: &RibbonRow) -> &SegmentSurface {
+        &self.surfaces[ribbon_row.surface as usize]
     }
 
-    /// Puts every pixel's fragments in order, joins neighbouring pieces of one hair and leaves out what is hidden.
+    /// Puts every pixel's fragments in order, joins neighbouring segments of one hair and leaves out what is hidden.
     pub(super) fn settle(&mut self) {
         let mut end = 0;
         for (span, fill) in self.spans.iter_mut().zip(&self.pixels) {

@@ -1,11 +1,11 @@
 //! The hybrid renderer on the CPU: bands of rows, and tiles within them (`docs/steps/strands.md`).
 
 mod bands;
-mod brush;
 mod compose;
 mod film;
 mod gather;
 mod pass;
+mod rasterise;
 mod run;
 mod scratch;
 mod tile;

@@ -6,20 +6,20 @@ use crate::hybrid::guard_light::GuardShader;
 use crate::hybrid::prepared::Prepared;
 use crate::hybrid::settings::Settings;
 use crate::hybrid::skin::{NONE, SkinTile};
-use crate::hybrid::strands::Knot;
+use crate::hybrid::strands::RibbonPoint;
 use crate::hybrid::strands::thin::Thinning;
 use crate::hybrid::undercoat_light::UndercoatShader;
 use crate::math::lanes::Vec3Row;
 use crate::math::table::Table;
 use crate::math::{Vec2, Vec3};
-use crate::stage::projection::View;
+use crate::stage::projection::Projection;
 use crate::volume::bins::{Bins, Reach};
 use crate::volume::march::shadows::Shadows;
 
 /// What is drawn, and through which view.
 pub(super) struct Pass<'a> {
     pub(super) prepared: &'a Prepared<'a>,
-    pub(super) view: View,
+    pub(super) view: Projection,
     pub(super) settings: &'a Settings,
     pub(super) thinning: Thinning,
     /// The skin's vertices in camera axes.
@@ -30,27 +30,27 @@ pub(super) struct Pass<'a> {
     pub(super) undercoat: Option<(&'a Shadows<'a>, UndercoatShader<'a>)>,
     /// Opacity of a guard hair along it.
     pub(super) opacity: Table,
-    /// One over the pieces of a strand.
-    pub(super) per_piece: f32,
+    /// One over the segments of a strand.
+    pub(super) per_segment: f32,
 }
 
 /// The strands of a band, ready to be drawn.
 #[derive(Default)]
-pub(super) struct Band {
+pub(super) struct StrandBand {
     pub(super) strands: Vec<u32>,
-    pub(super) knots: Vec<Knot>,
+    pub(super) ribbon_points: Vec<RibbonPoint>,
     /// Logarithms of radiance, one row for each strand.
-    pub(super) looks: Vec<Vec3Row>,
+    pub(super) log_radiance: Vec<Vec3Row>,
     /// Source index of each strand.
     pub(super) ids: Vec<u32>,
     pub(super) bins: Bins,
 }
 
-/// A place on a hair that is drawn.
+/// A tile on a hair that is drawn.
 pub(super) struct Hair<'a> {
-    /// Ends of the piece it lies on.
-    pub(super) a: &'a Knot,
-    pub(super) b: &'a Knot,
+    /// Ends of the segment it lies on.
+    pub(super) a: &'a RibbonPoint,
+    pub(super) b: &'a RibbonPoint,
     /// Where between them on the picture, 0 to 1.
     pub(super) linear: f32,
     /// Its depth along the optical axis, m.
@@ -58,7 +58,7 @@ pub(super) struct Hair<'a> {
 }
 
 impl<'a> Pass<'a> {
-    pub(super) fn new(prepared: &'a Prepared<'a>, shadows: Option<&'a Shadows<'a>>, view: View) -> Self {
+    pub(super) fn new(prepared: &'a Prepared<'a>, shadows: Option<&'a Shadows<'a>>, view: Projection) -> Self {
         let scene = &prepared.scene;
         let guard = scene.guard.map(|(strands, _)| (strands, GuardShader::new(prepared, strands, shadows, view.eye_m)));
         let skin_camera_m: Vec<Vec3> = scene.skin.positions_m.iter().map(|&p| view.camera_from_world(p)).collect();
@@ -66,7 +66,7 @@ impl<'a> Pass<'a> {
         let bare = scene.skin.triangles.iter().map(|triangle| !Flat::new(corners(triangle)).faces_eye()).collect();
         let undercoat = shadows.map(|shadows| (shadows, UndercoatShader::new(scene, prepared.lighting, view.eye_m)));
         let opacity = Table::new(|s| scene.guard.map_or(1.0, |(strands, _)| strands.profile.opacity_at(s)));
-        let pieces = scene.guard.map_or(1, |(strands, _)| strands.points_per_strand - 1);
+        let segments = scene.guard.map_or(1, |(strands, _)| strands.points_per_strand - 1);
         Self {
             prepared,
             view,
@@ -77,7 +77,7 @@ impl<'a> Pass<'a> {
             guard,
             undercoat,
             opacity,
-            per_piece: 1.0 / pieces as f32,
+            per_segment: 1.0 / segments as f32,
         }
     }
 
@@ -96,7 +96,7 @@ impl<'a> Pass<'a> {
     }
 
     /// Whether a hair lies before the skin. On slanting skin, half of the roots lie behind the skin of the pixel's middle:
-    /// they count where they lie before the skin of their own place. Seen from its bare side, skin hides what lies behind
+    /// they count where they lie before the skin of their own tile. Seen from its bare side, skin hides what lies behind
     /// either.
     #[inline(always)]
     pub(super) fn before_skin(&self, hair: &Hair<'_>, pixel: [i32; 2], skin: &SkinTile, at: usize) -> bool {
@@ -109,7 +109,7 @@ impl<'a> Pass<'a> {
         self.before_plane(hair, pixel, triangle)
     }
 
-    /// Whether a hair lies before the plane of a triangle, at its own place within the pixel.
+    /// Whether a hair lies before the plane of a triangle, at its own tile within the pixel.
     #[inline(never)]
     fn before_plane(&self, &Hair { a, b, linear, z_m }: &Hair<'_>, pixel: [i32; 2], triangle: u32) -> bool {
         let at = |from: f32, to: f32, pixel: i32| (from + linear * (to - from)).clamp(pixel as f32, (pixel + 1) as f32);

@@ -9,7 +9,7 @@ use crate::hybrid::flat;
 use crate::hybrid::picture::Picture;
 use crate::hybrid::settings::Settings;
 use crate::hybrid::skin::SkinTile;
-use crate::volume::bins::{Bins, Grid, Reach, TILE};
+use crate::volume::bins::{Bins, Reach, TILE, TileGrid};
 use crate::volume::mean::MeanShadow;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -19,7 +19,7 @@ impl Pass<'_> {
         let Settings { size, layers, .. } = *self.settings;
         let mut film = Film::of_layers(size[0], size[1], layers);
         let [width, height] = self.view.size;
-        let whole = Grid::whole(self.view.size);
+        let whole = TileGrid::whole(self.view.size);
 
         let start = Instant::now();
         let triangles = self.prepared.scene.skin.triangles.len();
@@ -47,7 +47,7 @@ impl Pass<'_> {
         for grid in bands {
             let (start, mean_ms) = (Instant::now(), self.mean_ms());
             let band = self.band(&grid, &strand_reach);
-            let bytes = size_of_val(&band.knots[..]) + size_of_val(&band.looks[..]) + band.bins.bytes();
+            let bytes = size_of_val(&band.ribbon_points[..]) + size_of_val(&band.log_radiance[..]) + band.bins.bytes();
             picture.steps.add_since("shaded strands", start, bytes);
             self.add_mean(picture, "shaded strands", mean_ms);
             picture.counts.strands += band.strands.len() as u64;
@@ -68,16 +68,16 @@ impl Pass<'_> {
                         let to = [(from[0] + TILE).min(width), (from[1] + TILE).min(height)];
                         let in_band = row * grid.columns + column;
                         let skin = skin_tile(in_picture);
-                        let place = TileView { in_band, in_picture, from, to, skin: &skin };
+                        let tile = TileView { in_band, in_picture, from, to, skin: &skin };
                         scratch.clear();
                         let begun = Instant::now();
-                        self.gather(&place, &band, &mut scratch);
+                        self.gather(&tile, &band, &mut scratch);
                         let gathered = Instant::now();
                         if let Some(entrances) = &entrances {
-                            self.march(entrances, &place, &mut scratch);
+                            self.march(entrances, &tile, &mut scratch);
                         }
                         let marched = Instant::now();
-                        self.compose(&place, &scratch, &mut rows);
+                        self.compose(&tile, &scratch, &mut rows);
                         let times = [gathered - begun, marched - gathered, marched.elapsed()];
                         for (spent_ns, time) in scratch.spent_ns.iter_mut().zip(times) {
                             *spent_ns += time.as_nanos() as u64;
@@ -92,7 +92,7 @@ impl Pass<'_> {
             self.add_mean(picture, "march", mean_ms);
             picture.counts.fragments += fragments;
             picture.counts.steps += steps;
-            picture.counts.pieces += band.bins.items() as u64;
+            picture.counts.segments += band.bins.items() as u64;
         }
         film
     }

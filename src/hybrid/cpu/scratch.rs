@@ -1,8 +1,8 @@
 //! One tile of the picture, and what its pixels hold while it is drawn.
 
 use super::gather::Gathered;
-use super::undercoat::PixelJourney;
-use crate::hybrid::resolve::Stretch;
+use super::undercoat::PixelRay;
+use crate::hybrid::resolve::VirtualFragment;
 use crate::hybrid::skin::SkinTile;
 use crate::volume::bins::TILE;
 use crate::volume::march::Start;
@@ -43,12 +43,12 @@ impl TileView<'_> {
 /// What a tile's pixels hold, kept between tiles for its memory.
 pub(super) struct Scratch {
     pub(super) guard: Gathered,
-    /// Depth's bits and index of each piece in the tile.
-    pub(super) pieces: Vec<u64>,
+    /// Depth's bits and index of each segment in the tile.
+    pub(super) segments: Vec<u64>,
     pub(super) spare: Vec<u64>,
     pub(super) starts: Vec<Vec<Start>>,
-    pub(super) journeys: Vec<PixelJourney>,
-    pub(super) stretches: Vec<Vec<Stretch>>,
+    pub(super) rays: Vec<PixelRay>,
+    pub(super) virtual_fragments: Vec<Vec<VirtualFragment>>,
     /// Depth from which on no undercoat is seen, m.
     pub(super) opaque_m: Vec<f32>,
     pub(super) fragment_count: u64,
@@ -61,7 +61,7 @@ impl Scratch {
     /// Forgets the last tile.
     pub(super) fn clear(&mut self) {
         self.starts.iter_mut().for_each(Vec::clear);
-        self.stretches.iter_mut().for_each(Vec::clear);
+        self.virtual_fragments.iter_mut().for_each(Vec::clear);
         self.opaque_m.fill(f32::INFINITY);
     }
 }
@@ -71,11 +71,11 @@ impl Default for Scratch {
         const SIZE: usize = TILE * TILE;
         Self {
             guard: Gathered::default(),
-            pieces: Vec::new(),
+            segments: Vec::new(),
             spare: Vec::new(),
             starts: vec![Vec::new(); SIZE],
-            journeys: Vec::new(),
-            stretches: vec![Vec::new(); SIZE],
+            rays: Vec::new(),
+            virtual_fragments: vec![Vec::new(); SIZE],
             opaque_m: vec![f32::INFINITY; SIZE],
             fragment_count: 0,
             step_count: 0,

@@ -2,28 +2,28 @@
 
 use super::gather::Gathered;
 use crate::data::film::Layers;
-use crate::hybrid::resolve::Stretch;
+use crate::hybrid::resolve::VirtualFragment;
 use crate::hybrid::strands::Fragment;
 use crate::hybrid::undercoat_light::UndercoatShader;
 use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, MOST, Mask, Row, Vec3Row, Vec3s, Work};
 use crate::volume::march::shadows::Shadows;
-use crate::volume::march::{Journey, MOST_STEP_GROWTH, Stepping, Steps, Traveller, march};
+use crate::volume::march::{MOST_STEP_GROWTH, MarchRay, MarchSteps, MarchVisitor, Stepping, march};
 use crate::volume::shell::lattice::Lattices;
 use crate::volume::shell::prisms::Prisms;
 
 /// A ray of a pixel, and where its depths are measured along the optical axis.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PixelJourney {
+pub(super) struct PixelRay {
     /// Pixel of the tile.
     pub(super) pixel: u32,
     /// Depth along the optical axis per distance along the ray.
     pub(super) z_per_m: f32,
-    pub(super) journey: Journey,
+    pub(super) march_ray: MarchRay,
 }
 
 /// Follows the rays of a tile; gives the number of steps.
-pub(super) struct Look<'a> {
+pub(super) struct EyeRays<'a> {
     pub(super) shadows: &'a Shadows<'a>,
     pub(super) shader: &'a UndercoatShader<'a>,
     pub(super) stepping: &'a Stepping,
@@ -31,18 +31,18 @@ pub(super) struct Look<'a> {
     pub(super) fragments: u32,
     /// Transmittance below which what is behind is not looked at.
     pub(super) opaque: f32,
-    pub(super) journeys: &'a [PixelJourney],
+    pub(super) rays: &'a [PixelRay],
     /// Guard hair, where what it hides is to be left out.
     pub(super) veiled: Option<&'a Gathered>,
     /// Virtual fragments by pixel.
-    pub(super) stretches: &'a mut [Vec<Stretch>],
+    pub(super) virtual_fragments: &'a mut [Vec<VirtualFragment>],
     /// By pixel, depth from which on no undercoat is seen, m.
     pub(super) opaque_m: &'a mut [f32],
     /// What virtual fragments are to tell; of [`Layers::Light`], colour and direction are left out.
     pub(super) layers: Layers,
 }
 
-impl Work for Look<'_> {
+impl Work for EyeRays<'_> {
     type Output = u64;
 
     #[inline(always)]
@@ -54,12 +54,12 @@ impl Work for Look<'_> {
     }
 }
 
-impl Look<'_> {
+impl EyeRays<'_> {
     #[inline(always)]
     fn follow<I: Isa, const ALL: bool>(self) -> u64 {
-        let Some(&first) = self.journeys.first() else { return 0 };
+        let Some(&first) = self.rays.first() else { return 0 };
         let (volume, stepping) = (self.shadows.volume, self.stepping);
-        let mut sight = Sight::<ALL> {
+        let mut walk = EyeWalk::<ALL> {
             shadows: Lattices::new(volume.layers()),
             fragments: self.fragments.clamp(1, 64) as f32,
             next: 0,
@@ -69,18 +69,18 @@ impl Look<'_> {
             hairs: [(&[], &[]); MOST],
             groups: Groups::default(),
             step_count: 0,
-            look: self,
+            rays: self,
         };
-        march::<I, _>(volume, stepping, &mut sight);
-        sight.step_count
+        march::<I, _>(volume, stepping, &mut walk);
+        walk.step_count
     }
 }
 
 /// What rays from the eye have gathered; of `ALL` layers, or of light alone.
-struct Sight<'a, const ALL: bool> {
-    look: Look<'a>,
+struct EyeWalk<'a, const ALL: bool> {
+    rays: EyeRays<'a>,
     next: usize,
-    current: [PixelJourney; MOST],
+    current: [PixelRay; MOST],
     shadows: Lattices<'a>,
     fragments: f32,
     through: Row,
@@ -104,7 +104,7 @@ struct Groups {
     tangent: Vec3Row,
 }
 
-impl<const ALL: bool> Sight<'_, ALL> {
+impl<const ALL: bool> EyeWalk<'_, ALL> {
     /// Takes account of the guard hairs that the ray in a lane has passed.
     #[inline(always)]
     fn pass_hairs(&mut self, lane: usize) {
@@ -124,9 +124,9 @@ impl<const ALL: bool> Sight<'_, ALL> {
     fn close(&mut self, lane: usize) {
         let groups = &mut self.groups;
         let scale = 1.0 / groups.weight.0[lane];
-        let PixelJourney { pixel, z_per_m, .. } = self.current[lane];
+        let PixelRay { pixel, z_per_m, .. } = self.current[lane];
         if groups.depth.0[lane] > 0.0 && scale.is_finite() {
-            self.look.stretches[pixel as usize].push(Stretch {
+            self.rays.virtual_fragments[pixel as usize].push(VirtualFragment {
                 from_m: groups.from_m.0[lane] * z_per_m,
                 to_m: groups.to_m.0[lane] * z_per_m,
                 depth: groups.depth.0[lane],
@@ -145,22 +145,22 @@ impl<const ALL: bool> Sight<'_, ALL> {
     }
 }
 
-impl<I: Isa, const ALL: bool> Traveller<I> for Sight<'_, ALL> {
+impl<I: Isa, const ALL: bool> MarchVisitor<I> for EyeWalk<'_, ALL> {
     #[inline(always)]
-    fn next(&mut self, lane: usize) -> Option<Journey> {
-        let current = *self.look.journeys.get(self.next)?;
+    fn next(&mut self, lane: usize) -> Option<MarchRay> {
+        let current = *self.rays.rays.get(self.next)?;
         self.next += 1;
         self.current[lane] = current;
         self.through.0[lane] = 1.0;
         self.veil.0[lane] = 1.0;
-        if let Some(guard) = self.look.veiled {
+        if let Some(guard) = self.rays.veiled {
             let pixel = current.pixel as usize;
             self.hairs[lane] = (guard.of(pixel), guard.veil(pixel));
             // Asked for after a step or more.
             guard.of(pixel).iter().step_by(4).for_each(lanes::prefetch);
             guard.veil(pixel).iter().step_by(16).for_each(lanes::prefetch);
         }
-        Some(current.journey)
+        Some(current.march_ray)
     }
 
     #[inline(always)]
@@ -171,15 +171,15 @@ impl<I: Isa, const ALL: bool> Traveller<I> for Sight<'_, ALL> {
 
     #[inline(always)]
     fn enter(&mut self, lane: usize, triangle: u32) {
-        self.shadows.set(lane, self.look.shadows.lattice(triangle));
+        self.shadows.set(lane, self.rays.shadows.lattice(triangle));
     }
 
     #[inline(always)]
-    fn visit(&mut self, prisms: &Prisms, steps: &Steps<I>, on: Mask<I>) -> Mask<I> {
+    fn visit(&mut self, prisms: &Prisms, steps: &MarchSteps<I>, on: Mask<I>) -> Mask<I> {
         let one = F32s::splat(1.0);
-        let content = self.look.shadows.volume.content;
+        let content = self.rays.shadows.volume.content;
         let shadow = self.shadows.at(steps.b, content.level(steps.t));
-        let (albedo, radiance) = self.look.shader.look(content, prisms, steps, shadow);
+        let (albedo, radiance) = self.rays.shader.shade(content, prisms, steps, shadow);
         let through = F32s::of(&self.through);
         let left = through * on.select((-steps.depth).exp_negative(), one);
         let weight = through - left;
@@ -206,7 +206,7 @@ impl<I: Isa, const ALL: bool> Traveller<I> for Sight<'_, ALL> {
                 self.close(lane);
             }
         }
-        if self.look.veiled.is_some() {
+        if self.rays.veiled.is_some() {
             let on = on.bits();
             for lane in 0..I::LANES {
                 if on >> lane & 1 != 0 {
@@ -214,14 +214,14 @@ impl<I: Isa, const ALL: bool> Traveller<I> for Sight<'_, ALL> {
                 }
             }
         }
-        (left * F32s::of(&self.veil)).gt(F32s::splat(self.look.opaque))
+        (left * F32s::of(&self.veil)).gt(F32s::splat(self.rays.opaque))
     }
 
     fn end(&mut self, lane: usize) {
         self.close(lane);
-        let PixelJourney { pixel, z_per_m, .. } = self.current[lane];
-        if self.through.0[lane] * self.veil.0[lane] <= self.look.opaque {
-            let opaque_m = &mut self.look.opaque_m[pixel as usize];
+        let PixelRay { pixel, z_per_m, .. } = self.current[lane];
+        if self.through.0[lane] * self.veil.0[lane] <= self.rays.opaque {
+            let opaque_m = &mut self.rays.opaque_m[pixel as usize];
             *opaque_m = opaque_m.min(self.groups.to_m.0[lane] * z_per_m);
         }
     }

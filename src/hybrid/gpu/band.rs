@@ -2,17 +2,17 @@
 
 use super::kernels::Kernels;
 use super::layout::{Totals, ViewUniform};
-use super::plan::{FILM_BYTES, Room, START_BYTES, STRETCH_BYTES};
+use super::plan::{FILM_BYTES, Room, START_BYTES, VIRTUAL_FRAGMENT_BYTES};
 use super::seen::Seen;
 use crate::error::Result;
 use crate::gpu::{Gpu, Timer};
-use crate::stage::projection::View;
+use crate::stage::projection::Projection;
 
 /// The device's steps in the order of their timestamps.
 pub(super) const STEPS: [&str; 5] = ["base mesh", "shell entrances", "march", "explicit raster", "compositing"];
 
 /// Buffers with room for a band.
-pub(super) struct Band {
+pub(super) struct BandBuffers {
     view: wgpu::Buffer,
     totals: wgpu::Buffer,
     pixels: [wgpu::Buffer; 6],
@@ -24,12 +24,12 @@ pub(super) struct Band {
     order: wgpu::BindGroup,
     composite: wgpu::BindGroup,
     poison: wgpu::BindGroup,
-    looks: wgpu::BindGroup,
+    log_radiance: wgpu::BindGroup,
     room: Room,
 }
 
 /// A band as drawn, and what it came to.
-pub(super) struct Drawn {
+pub(super) struct DrawnBand {
     /// Four planes of four numbers per pixel, as `hybrid/composite.wgsl` describes.
     pub film: Vec<[f32; 4]>,
     /// What the band came to.
@@ -38,7 +38,7 @@ pub(super) struct Drawn {
     pub ms: Option<Vec<f64>>,
 }
 
-impl Band {
+impl BandBuffers {
     /// Makes the buffers.
     ///
     /// # Errors
@@ -56,13 +56,13 @@ impl Band {
             pixel("skin depth", 4)?,
             pixel("skin triangle", 4)?,
             pixel("opaque depth", 4)?,
-            pixel("first stretch", 4)?,
+            pixel("first virtual fragment", 4)?,
             pixel("spans", 8)?,
             pixel("cursors", 4)?,
         ];
         let film = pixel("film", FILM_BYTES)?;
         let starts = gpu.storage("starts", room.starts, START_BYTES)?;
-        let stretches = gpu.storage("stretches", room.stretches, STRETCH_BYTES)?;
+        let virtual_fragments = gpu.storage("virtual_fragments", room.virtual_fragments, VIRTUAL_FRAGMENT_BYTES)?;
         let fragment = |label| gpu.storage(label, room.fragments, 4);
         let [z, point, share, pixel, order] = [
             fragment("fragment depths")?,
@@ -77,12 +77,15 @@ impl Band {
         Ok(Self {
             frame: gpu.group(&layouts.frame, &of_frame),
             entrances: gpu.group(&layouts.entrances, &[&seen.faces, &starts]),
-            march: gpu.group(&layouts.march, &[&seen.faces, &starts, &seen.inside, &stretches]),
+            march: gpu.group(&layouts.march, &[&seen.faces, &starts, &seen.inside, &virtual_fragments]),
             guard: gpu.group(&layouts.guard, &[&z, &point, &share, &pixel]),
             order: gpu.group(&layouts.order, &[&z, &point, &pixel, &order]),
-            composite: gpu.group(&layouts.composite, &[&z, &point, &share, &order, &stretches, &seen.looks, &film]),
+            composite: gpu.group(
+                &layouts.composite,
+                &[&z, &point, &share, &order, &virtual_fragments, &seen.log_radiance, &film],
+            ),
             poison: gpu.group(&layouts.one, &[&film]),
-            looks: gpu.group(&layouts.one, &[&seen.looks]),
+            log_radiance: gpu.group(&layouts.one, &[&seen.log_radiance]),
             view,
             totals,
             pixels,
@@ -95,11 +98,11 @@ impl Band {
     ///
     /// # Errors
     /// As [`Gpu::finish`].
-    pub(super) fn light(&self, gpu: &Gpu, kernels: &Kernels, seen: &Seen, view: &View) -> Result<Option<f64>> {
+    pub(super) fn light(&self, gpu: &Gpu, kernels: &Kernels, seen: &Seen, view: &Projection) -> Result<Option<f64>> {
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view, [0, 0])));
         let timer = Timer::new(gpu, 1);
         let mut encoder = gpu.encoder("light");
-        let groups = [&seen.group, &seen.volume, &self.frame, &self.looks];
+        let groups = [&seen.group, &seen.volume, &self.frame, &self.log_radiance];
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("light"),
@@ -116,7 +119,14 @@ impl Band {
     ///
     /// # Errors
     /// As [`Gpu::finish`].
-    pub(super) fn draw(&self, gpu: &Gpu, kernels: &Kernels, seen: &Seen, view: &View, rows: [u32; 2]) -> Result<Drawn> {
+    pub(super) fn draw(
+        &self,
+        gpu: &Gpu,
+        kernels: &Kernels,
+        seen: &Seen,
+        view: &Projection,
+        rows: [u32; 2],
+    ) -> Result<DrawnBand> {
         let pixels = (rows[1] - rows[0]) as usize * view.size[0];
         let totals_bytes = size_of::<Totals>() as u64;
         let film_bytes = (pixels * FILM_BYTES) as u64;
@@ -134,7 +144,7 @@ impl Band {
         let uniform = ViewUniform {
             most_starts: self.room.starts as u32,
             most_fragments: self.room.fragments as u32,
-            most_stretches: self.room.stretches as u32,
+            most_virtual_fragments: self.room.virtual_fragments as u32,
             ..ViewUniform::new(view, rows)
         };
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&uniform));
@@ -144,7 +154,7 @@ impl Band {
         encoder.copy_buffer_to_buffer(&self.totals, 0, &read_totals, 0, totals_bytes);
         encoder.copy_buffer_to_buffer(&self.film, 0, &read_film, 0, film_bytes);
         gpu.finish(encoder)?;
-        Ok(Drawn {
+        Ok(DrawnBand {
             film: bytemuck::pod_collect_to_vec(&gpu.read_buffer(&read_film)?),
             totals: bytemuck::pod_read_unaligned(&gpu.read_buffer(&read_totals)?),
             ms: timer.read_ms(gpu)?,
@@ -188,9 +198,9 @@ impl Band {
         });
         encoder.clear_buffer(cursors, 0, None);
         begin(encoder, 3, &|pass| {
-            kernels.guard[0].dispatch(pass, &own(&self.guard), seen.piece_count.div_ceil(64));
+            kernels.guard[0].dispatch(pass, &own(&self.guard), seen.segment_count.div_ceil(64));
             kernels.allot[1].dispatch(pass, &common, by_256);
-            kernels.guard[1].dispatch(pass, &own(&self.guard), seen.piece_count.div_ceil(64));
+            kernels.guard[1].dispatch(pass, &own(&self.guard), seen.segment_count.div_ceil(64));
             kernels.trim.dispatch(pass, &own(&self.guard), by_64);
             // More threads than fragments: how many there are is not known here.
             kernels.order.dispatch(pass, &own(&self.order), self.room.fragments.div_ceil(64));

@@ -4,10 +4,10 @@ use super::items::{AT_BORDER, LINEAR, NOTHING};
 use super::layout::Totals;
 use crate::data::light::NEAREST_M;
 use crate::gpu::Constant::{self, F32, U32};
-use crate::hybrid::strands::{LEAST_SHARE, LOOKS, MOST_BEND};
+use crate::hybrid::strands::{LEAST_SHARE, LIT_POINTS, MOST_BEND};
 use crate::math::table::Table;
 use crate::volume::march::content::TABLES;
-use crate::volume::march::shadows::{DARK, DARK_AT_BORDERS, HASTE, TOWARDS_LIGHT};
+use crate::volume::march::shadows::{DARK, DARK_AT_BORDERS, STEP_GROWTH, TOWARDS_LIGHT};
 use crate::volume::march::{MOST_STEP_GROWTH, MOST_STEP_LENGTHENING, MOST_STEPS, ON_SIDE};
 use crate::volume::mean;
 use crate::volume::scene::{DEEPEST_HAIR, HORIZON};
@@ -28,20 +28,20 @@ pub const CONSTANTS: [Constant; 28] = [
     U32("LINEAR", LINEAR),
     U32("STARTS", slot(offset_of!(Totals, starts))),
     U32("FRAGMENTS", slot(offset_of!(Totals, fragments))),
-    U32("STRETCHES", slot(offset_of!(Totals, stretches))),
+    U32("VIRTUAL_FRAGMENTS", slot(offset_of!(Totals, virtual_fragments))),
     U32("STEPS", slot(offset_of!(Totals, steps))),
     U32("OVERFLOW", slot(offset_of!(Totals, overflow))),
     U32("TABLE_VALUES", Table::VALUES as u32),
     U32("TABLES", TABLES as u32),
     U32("MEAN_LAYERS", mean::LAYERS as u32),
-    U32("LOOKS", LOOKS as u32),
+    U32("LIT_POINTS", LIT_POINTS as u32),
     U32("MOST_STEPS", MOST_STEPS),
     F32("MOST_STEP_GROWTH", MOST_STEP_GROWTH),
     F32("MOST_STEP_LENGTHENING", MOST_STEP_LENGTHENING),
     F32("ON_SIDE", ON_SIDE),
     F32("DARK", DARK),
     F32("DARK_AT_BORDERS", DARK_AT_BORDERS),
-    F32("HASTE", HASTE),
+    F32("STEP_GROWTH", STEP_GROWTH),
     F32("SHADOW_STEP_DEPTH", TOWARDS_LIGHT.depth),
     F32("SHADOW_STEP_LAYERS", TOWARDS_LIGHT.layers),
     F32("LARGEST", LARGEST),

@@ -143,11 +143,11 @@ pub struct InsideItem {
     pub triangle: u32,
 }
 
-/// `Stretch` of `shared/stretch.wgsl`, which only shaders read and write.
+/// `VirtualFragment` of `shared/virtual_fragment.wgsl`, which only shaders read and write.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[expect(missing_docs, reason = "each field is described where the shader declares it")]
-pub struct StretchItem {
+pub struct VirtualFragmentItem {
     pub radiance: [f32; 3],
     pub from_m: f32,
     pub to_m: f32,

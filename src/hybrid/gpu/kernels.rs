@@ -23,13 +23,13 @@ pub const SHARED: [Source; 18] = [
     source!("shared/undercoat.wgsl"),
     source!("shared/camera.wgsl"),
     source!("shared/march.wgsl"),
-    source!("shared/undercoat_look.wgsl"),
+    source!("shared/undercoat_light.wgsl"),
     source!("shared/blocks.wgsl"),
     source!("shared/faces.wgsl"),
-    source!("shared/stretch.wgsl"),
+    source!("shared/virtual_fragment.wgsl"),
     source!("shared/guard.wgsl"),
     source!("shared/fragments.wgsl"),
-    source!("shared/skin_look.wgsl"),
+    source!("shared/skin_light.wgsl"),
 ];
 /// Fills stored density.
 pub const DENSITY: Source = source!("hybrid/density.wgsl");
@@ -41,7 +41,7 @@ pub const STRANDS: Source = source!("hybrid/strands.wgsl");
 pub const SKIN: Source = source!("hybrid/skin.wgsl");
 /// Finds where rays enter the shell.
 pub const ENTRANCES: Source = source!("hybrid/entrances.wgsl");
-/// Turns counts into places in lists.
+/// Turns counts into points in lists.
 pub const ALLOT: Source = source!("hybrid/allot.wgsl");
 /// Follows rays through undercoat.
 pub const MARCH: Source = source!("hybrid/march.wgsl");
@@ -111,7 +111,7 @@ pub(super) struct Kernels {
     pub skin: [Kernel; 2],
     /// First counts, then lists.
     pub entrances: [Kernel; 2],
-    /// First places for starts, then for fragments.
+    /// First points for starts, then for fragments.
     pub allot: [Kernel; 2],
     pub march: Kernel,
     /// First counts, then lists.

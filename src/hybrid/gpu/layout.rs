@@ -6,7 +6,7 @@ use crate::hybrid::resolve::Blending;
 use crate::math::Vec3;
 use crate::shade::kajiya_kay::KajiyaKay;
 use crate::shade::lobes::Lobes;
-use crate::stage::projection::View;
+use crate::stage::projection::Projection;
 use crate::volume::scene::{Layer, Lighting, Scene};
 use bytemuck::{Pod, Zeroable};
 
@@ -184,15 +184,15 @@ pub struct ViewUniform {
     pub size: [u32; 2],
     /// First row of the band and the one past its last.
     pub rows: [u32; 2],
-    /// Room for stretches.
-    pub most_stretches: u32,
+    /// Room for virtual fragments.
+    pub most_virtual_fragments: u32,
     /// Nothing.
     pub padding: u32,
 }
 
 impl ViewUniform {
     /// Of a view and a band of its rows; room for nothing.
-    pub fn new(view: &View, rows: [u32; 2]) -> Self {
+    pub fn new(view: &Projection, rows: [u32; 2]) -> Self {
         let [right, up, forward] = view.axes.map(|axis| axis.to_array());
         Self {
             eye_m: view.eye_m.to_array(),
@@ -206,7 +206,7 @@ impl ViewUniform {
             centre_px: view.centre_px.to_array(),
             size: view.size.map(|n| n as u32),
             rows,
-            most_stretches: 0,
+            most_virtual_fragments: 0,
             padding: 0,
         }
     }
@@ -220,8 +220,8 @@ pub struct Totals {
     pub starts: u32,
     /// Fragments of guard hair.
     pub fragments: u32,
-    /// Stretches of undercoat.
-    pub stretches: u32,
+    /// Virtual fragments of undercoat.
+    pub virtual_fragments: u32,
     /// Steps through undercoat.
     pub steps: u32,
     /// Not 0 where a list was too short.

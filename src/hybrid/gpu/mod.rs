@@ -1,7 +1,7 @@
 //! A picture of a scene on a graphics device: the same steps as on the CPU, as compute passes (`shaders/hybrid/`).
 //!
 //! A pass runs from the skin to the film without a look from the host. Lists that grow with the picture (where rays enter the
-//! shell, stretches of undercoat, fragments of guard hair) are counted, then filled; where one was too short, the device
+//! shell, virtual fragments of undercoat, fragments of guard hair) are counted, then filled; where one was too short, the device
 //! says how much it needs and the band is drawn again, with more room or fewer rows. Nothing is dropped.
 
 mod band;
@@ -23,7 +23,7 @@ use crate::error::Result;
 use crate::gpu::Gpu;
 use crate::math::Vec3;
 use crate::metrics::timing::Steps;
-use band::{Band, STEPS};
+use band::{BandBuffers, STEPS};
 use kernels::Kernels;
 use plan::Plan;
 use resident::Resident;
@@ -78,7 +78,7 @@ impl GpuRenderer<'_> {
 
         let largest = gpu.largest_storage_bytes() as usize;
         let mut plan = Plan::new(view.size, budget_bytes, largest);
-        let mut band = Band::new(gpu, kernels, &seen, plan.room)?;
+        let mut band = BandBuffers::new(gpu, kernels, &seen, plan.room)?;
         let lit_ms = band.light(gpu, kernels, &seen, &view)?;
         picture.steps.add("shaded strands", lit_ms.unwrap_or(0.0), seen.bytes[1] as u64);
         picture.film = Film::of_layers(settings.size[0], settings.size[1], settings.layers);
@@ -90,7 +90,7 @@ impl GpuRenderer<'_> {
             if drawn.totals.overflow != 0 {
                 plan = plan.grown(&drawn.totals)?;
                 drop(band);
-                band = Band::new(gpu, kernels, &seen, plan.room)?;
+                band = BandBuffers::new(gpu, kernels, &seen, plan.room)?;
                 continue;
             }
             for (i, name) in STEPS.into_iter().enumerate() {
@@ -103,7 +103,7 @@ impl GpuRenderer<'_> {
             row = rows[1] as usize;
         }
         picture.counts.strands = seen.strand_count as u64;
-        picture.counts.pieces = seen.piece_count as u64;
+        picture.counts.segments = seen.segment_count as u64;
         picture.counts.subelements = seen.stored_bytes[0] as u64;
         finish(&mut picture.film, settings.edge_samples());
         Ok(picture)
@@ -120,7 +120,7 @@ fn room_bytes(plan: &Plan, step: usize) -> usize {
     match STEPS[step] {
         "base mesh" => 8 * room.pixels,
         "shell entrances" => 12 * room.pixels + plan::START_BYTES * room.starts,
-        "march" => 8 * room.pixels + plan::STRETCH_BYTES * room.stretches,
+        "march" => 8 * room.pixels + plan::VIRTUAL_FRAGMENT_BYTES * room.virtual_fragments,
         "explicit raster" => plan::FRAGMENT_BYTES * room.fragments,
         _ => plan::FILM_BYTES * room.pixels,
     }

@@ -1,22 +1,22 @@
 //! How much of a picture is drawn at once: bands of rows whose buffers fit a budget.
 
-use super::items::StretchItem;
+use super::items::VirtualFragmentItem;
 use super::layout::Totals;
 use crate::error::{Error, Kind, Result};
 
 /// Pixels of a band that the 64 threads of a triangle look at, at most: a software driver ends loops after 65,535 rounds.
 const MOST_PIXELS: usize = 64 * 60_000;
 
-/// Bytes of each pixel: film, skin, what hides, first stretch, span and cursor.
+/// Bytes of each pixel: film, skin, what hides, first virtual_fragment, span and cursor.
 pub(super) const PIXEL_BYTES: usize = FILM_BYTES + 7 * 4;
 /// Bytes of a pixel's film.
 pub(super) const FILM_BYTES: usize = 64;
-/// Bytes of a place where a ray enters the shell.
+/// Bytes of a point where a ray enters the shell.
 pub(super) const START_BYTES: usize = 8;
 /// Bytes of a fragment of guard hair, in five buffers of four.
 pub(super) const FRAGMENT_BYTES: usize = 20;
-/// Bytes of a stretch of undercoat.
-pub(super) const STRETCH_BYTES: usize = size_of::<StretchItem>();
+/// Bytes of a virtual fragment.
+pub(super) const VIRTUAL_FRAGMENT_BYTES: usize = size_of::<VirtualFragmentItem>();
 
 /// What a band's buffers hold at most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,8 +27,8 @@ pub struct Room {
     pub starts: usize,
     /// Fragments of guard hair.
     pub fragments: usize,
-    /// Stretches of undercoat.
-    pub stretches: usize,
+    /// Virtual fragments of undercoat.
+    pub virtual_fragments: usize,
 }
 
 /// Rows per band, and room for them.
@@ -55,7 +55,7 @@ impl Plan {
             pixels: fit(25, PIXEL_BYTES, FILM_BYTES).min(MOST_PIXELS).max(width),
             starts: fit(5, START_BYTES, START_BYTES),
             fragments: fit(35, FRAGMENT_BYTES, 4),
-            stretches: fit(35, STRETCH_BYTES, STRETCH_BYTES),
+            virtual_fragments: fit(35, VIRTUAL_FRAGMENT_BYTES, VIRTUAL_FRAGMENT_BYTES),
         };
         let rows = (most.pixels / width).clamp(1, height);
         let pixels = rows * width;
@@ -64,7 +64,7 @@ impl Plan {
             pixels,
             starts: most.starts.min(2 * pixels),
             fragments: most.fragments.min(16 * pixels),
-            stretches: most.stretches.min(6 * pixels),
+            virtual_fragments: most.virtual_fragments.min(6 * pixels),
         };
         Self { rows, room, most, width }
     }
@@ -74,9 +74,9 @@ impl Plan {
     /// # Errors
     /// [`Kind::Device`] where a single row does not fit.
     pub fn grown(self, totals: &Totals) -> Result<Self> {
-        let needs = [totals.starts, totals.fragments, totals.stretches].map(|n| n as usize);
-        let most = [self.most.starts, self.most.fragments, self.most.stretches];
-        let room = [self.room.starts, self.room.fragments, self.room.stretches];
+        let needs = [totals.starts, totals.fragments, totals.virtual_fragments].map(|n| n as usize);
+        let most = [self.most.starts, self.most.fragments, self.most.virtual_fragments];
+        let room = [self.room.starts, self.room.fragments, self.room.virtual_fragments];
         let short = (0..3).any(|i| needs[i] > room[i]);
         let mut next = self;
         // By how much the neediest list passes what can be made.
@@ -86,7 +86,7 @@ impl Plan {
             let factor = if short { 0.8 / excess } else { 0.5 };
             if self.rows == 1 {
                 return Err(Error::new(Kind::Device, "a row of the picture does not fit the graphics device")
-                    .with_found(format!("{} fragments and {} stretches", needs[1], needs[2]))
+                    .with_found(format!("{} fragments and {} virtual fragments", needs[1], needs[2]))
                     .with_expected(format!("at most {} and {}", most[1], most[2])));
             }
             next.rows = ((self.rows as f64 * factor) as usize).clamp(1, self.rows - 1);
@@ -95,7 +95,7 @@ impl Plan {
         let roomier = |i: usize| (needs[i] + needs[i] / 4).clamp(room[i].min(most[i]), most[i]);
         next.room.starts = roomier(0);
         next.room.fragments = roomier(1);
-        next.room.stretches = roomier(2);
+        next.room.virtual_fragments = roomier(2);
         Ok(next)
     }
 }

@@ -6,8 +6,8 @@ use super::layout::BlocksUniform;
 use super::resident::Hair;
 use crate::error::Result;
 use crate::gpu::Timer;
-use crate::hybrid::strands::LOOKS;
-use crate::stage::projection::View;
+use crate::hybrid::strands::LIT_POINTS;
+use crate::stage::projection::Projection;
 use crate::volume::march::volume::Volume;
 use crate::volume::shell::{lattice, locate};
 
@@ -21,14 +21,14 @@ pub(super) struct Seen {
     pub faces: wgpu::Buffer,
     /// Prisms around the eye.
     pub inside: wgpu::Buffer,
-    /// Logarithms of guard hair's radiance, [`LOOKS`] of each strand.
-    pub looks: wgpu::Buffer,
+    /// Logarithms of guard hair's radiance, [`LIT_POINTS`] of each strand.
+    pub log_radiance: wgpu::Buffer,
     /// Triangles of the skin.
     pub triangle_count: usize,
     /// Outer faces.
     pub face_count: usize,
-    /// Pieces of guard hair.
-    pub piece_count: usize,
+    /// Segments of guard hair.
+    pub segment_count: usize,
     /// Strands of guard hair.
     pub strand_count: usize,
     /// Bytes of stored density and shadow.
@@ -48,12 +48,12 @@ struct Stored {
 }
 
 impl Stored {
-    /// Those of `order` that fit into `most_columns`; `columns_of` gives their columns. Writes where each begins to `place`.
+    /// Those of `order` that fit into `most_columns`; `columns_of` gives their columns. Writes where each begins to `point`.
     fn new(
         order: impl Iterator<Item = u32>,
         most_columns: usize,
         columns_of: impl Fn(u32) -> u32,
-        mut place: impl FnMut(u32, u32),
+        mut point: impl FnMut(u32, u32),
     ) -> Self {
         let mut stored = Self { starts: Vec::new(), columns: 0 };
         for triangle in order {
@@ -61,7 +61,7 @@ impl Stored {
             if stored.columns + columns > most_columns {
                 continue;
             }
-            place(triangle, stored.columns as u32);
+            point(triangle, stored.columns as u32);
             stored.starts.push([stored.columns as u32, triangle]);
             stored.columns += columns;
         }
@@ -78,7 +78,7 @@ impl Seen {
     pub(super) fn new(
         renderer: &GpuRenderer<'_>,
         volume: Option<&Volume<'_>>,
-        view: &View,
+        view: &Projection,
         most_bytes: usize,
     ) -> Result<Self> {
         let GpuRenderer { gpu, prepared, kernels, resident, .. } = renderer;
@@ -95,7 +95,7 @@ impl Seen {
 
         let around = volume.map_or(Vec::new(), |v| locate::around(v.shell(), view.eye_m));
         let inside: Vec<_> =
-            around.iter().map(|&(triangle, place)| InsideItem { b: place.b, t: place.t, triangle }).collect();
+            around.iter().map(|&(triangle, point)| InsideItem { b: point.b, t: point.t, triangle }).collect();
         uniform.inside_count = inside.len() as u32;
         uniform.strand_count = hair.count as u32;
         let scene = gpu.buffer("scene", &[uniform], wgpu::BufferUsages::UNIFORM);
@@ -140,16 +140,16 @@ impl Seen {
         }
         timer.stop(&mut encoder);
         gpu.finish(encoder)?;
-        let looks_bytes = hair.count * LOOKS * 12;
+        let looks_bytes = hair.count * LIT_POINTS * 12;
         Ok(Self {
             group,
             volume: gpu.group(&layouts.volume, &[&stored[0], &stored[1]]),
             faces: resident.faces.clone(),
             inside: gpu.read_only("prisms around the eye", &inside)?,
-            looks: gpu.storage("looks", hair.count * LOOKS, 12)?,
+            log_radiance: gpu.storage("looks", hair.count * LIT_POINTS, 12)?,
             triangle_count: triangles.len(),
             face_count: uniform.face_count as usize,
-            piece_count: hair.count * (uniform.points_per_strand as usize - 1),
+            segment_count: hair.count * (uniform.points_per_strand as usize - 1),
             strand_count: hair.count,
             stored_bytes,
             bytes: [resident.bytes, hair.bytes + looks_bytes],
@@ -161,7 +161,7 @@ impl Seen {
 /// Which prisms have stored density and which stored shadow; writes how fine they are and where they begin to `triangles`.
 fn stored(
     volume: Option<&Volume<'_>>,
-    view: &View,
+    view: &Projection,
     triangles: &mut [TriangleItem],
     most_columns: usize,
 ) -> [Stored; 2] {
@@ -189,7 +189,7 @@ fn stored(
 
 /// Whether a ray of the view may pass the prism over a triangle: not where all its corners lie outside of one side of the
 /// picture. A prism lies within its corners' hull.
-fn may_be_seen(volume: &Volume<'_>, view: &View, t: u32) -> bool {
+fn may_be_seen(volume: &Volume<'_>, view: &Projection, t: u32) -> bool {
     let prism = volume.shell().prism(t);
     let corners = [0, 1, 2].map(|i| [prism.foot_m[i], prism.foot_m[i] + prism.offset_m[i]]);
     let points = corners.as_flattened().iter().map(|&p| view.camera_from_world(p));

@@ -1,6 +1,6 @@
 //! Guard hair as camera-facing ribbons, with sub-pixel coverage (`docs/steps/strands.md`).
 //!
-//! A piece of a strand between two points becomes a ribbon; each pixel it touches gets a fragment whose opacity is the
+//! A segment of a strand between two points becomes a ribbon; each pixel it touches gets a fragment whose opacity is the
 //! covered share of the pixel's area times the hair's own opacity. A hair thinner than a pixel loses opacity, not
 //! existence.
 
@@ -13,44 +13,45 @@ use crate::math::lanes::{F32s, Isa, MOST, Row, U32s, Vec3Row, Vec3s};
 
 /// How often a strand is lit: logarithms of the opaque hair's radiance, linear RGB. Shadow, and radiance with it, goes
 /// exponentially from one to the next.
-pub const LOOKS: usize = 8;
-const _: () = assert!(LOOKS <= MOST, "a row holds all looks of a strand");
+pub const LIT_POINTS: usize = 8;
+const _: () = assert!(LIT_POINTS <= MOST, "a row holds all looks of a strand");
 
-/// Where along the hair, in [0, 1], look `i` is taken: closer to each other towards the tips, which are seen most.
-pub fn look_s(i: usize) -> f32 {
-    (i as f32 / (LOOKS - 1) as f32).sqrt()
+/// Where along the hair, in [0, 1], lit point `i` lies: closer to each other towards the tips, which are seen most.
+pub fn lit_point_s(i: usize) -> f32 {
+    (i as f32 / (LIT_POINTS - 1) as f32).sqrt()
 }
 
-/// Radiance at each `s` in [0, 1] along a hair: its logarithm is a curve through the looks.
+/// Radiance at each `s` in [0, 1] along a hair: its logarithm is a curve through the lit points.
 #[inline(always)]
-pub fn radiance_at<I: Isa>(looks: &Vec3Row, s: F32s<I>) -> Vec3s<I> {
-    let at = s * s * (LOOKS - 1) as f32;
-    let low = at.floor().within(0.0, (LOOKS - 2) as f32);
+pub fn radiance_at<I: Isa>(log_radiance: &Vec3Row, s: F32s<I>) -> Vec3s<I> {
+    let at = s * s * (LIT_POINTS - 1) as f32;
+    let low = at.floor().within(0.0, (LIT_POINTS - 2) as f32);
     let part = at - low;
-    // From the middle of three looks; at the ends the nearest three.
-    let around = [low.max(F32s::splat(1.0)).to_whole(), (low + 1.0).min(F32s::splat((LOOKS - 2) as f32)).to_whole()];
-    let places = Places { low: low.to_whole(), part, hollow: (part - part * part) * 0.25, around };
-    Vec3s::new(places.of(&looks.x), places.of(&looks.y), places.of(&looks.z))
+    // From the middle of three lit points; at the ends the nearest three.
+    let around =
+        [low.max(F32s::splat(1.0)).to_whole(), (low + 1.0).min(F32s::splat((LIT_POINTS - 2) as f32)).to_whole()];
+    let places = BetweenLitPoints { low: low.to_whole(), part, hollow: (part - part * part) * 0.25, around };
+    Vec3s::new(places.of(&log_radiance.x), places.of(&log_radiance.y), places.of(&log_radiance.z))
 }
 
-/// A light that ends between two looks bends their curve no more than this, lest it swings over.
+/// A light that ends between two lit points bends their curve no more than this, lest it swings over.
 pub const MOST_BEND: f32 = 3.0;
 
 /// Share of what a hair covers at most below which a corner of it is left out: of the fragments a fourteenth, of what they cover a
 /// thousandth.
 pub const LEAST_SHARE: f32 = 0.01;
 
-/// Where between looks.
-struct Places<I: Isa> {
+/// Where between lit points.
+struct BetweenLitPoints<I: Isa> {
     low: U32s<I>,
     part: F32s<I>,
-    /// By how much a curve of unit second differences at both looks lies below the straight line between them, halved.
+    /// By how much a curve of unit second differences at both lit points lies below the straight line between them, halved.
     hollow: F32s<I>,
-    /// The looks whose second differences count.
+    /// The lit points whose second differences count.
     around: [U32s<I>; 2],
 }
 
-impl<I: Isa> Places<I> {
+impl<I: Isa> BetweenLitPoints<I> {
     /// e to the power of the curve through logarithms.
     #[inline(always)]
     fn of(&self, row: &Row) -> F32s<I> {
@@ -69,7 +70,7 @@ fn bend_at<I: Isa>(row: &Row, middle: U32s<I>) -> F32s<I> {
 
 /// A point of a strand on the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Zeroable)]
-pub struct Knot {
+pub struct RibbonPoint {
     /// Pixel coordinates.
     pub x: f32,
     /// Pixel coordinates.
@@ -90,8 +91,8 @@ pub struct Fragment {
     z_m: f32,
     /// As [`Parts`].
     parts: u32,
-    /// What it shows: index of a [`Streak`], in the order of drawing.
-    pub streak: u32,
+    /// What it shows: index of a [`RibbonRow`], in the order of drawing.
+    pub ribbon_row: u32,
 }
 
 /// What a hair hides of a pixel, a number but for its lowest eight bits, which hold the hair's own opacity there in 255ths: as much
@@ -125,8 +126,8 @@ impl Parts {
 impl Fragment {
     /// Of hair `id` at depth `z_m` > 0 along the optical axis.
     #[inline(always)]
-    pub fn new(z_m: f32, id: u32, Parts(parts): Parts, streak: u32) -> Self {
-        Self { z_m, id, parts, streak }
+    pub fn new(z_m: f32, id: u32, Parts(parts): Parts, ribbon_row: u32) -> Self {
+        Self { z_m, id, parts, ribbon_row }
     }
 
     /// What it hides of the pixel.
@@ -135,7 +136,7 @@ impl Fragment {
         f32::from_bits(self.parts & !OPACITY)
     }
 
-    /// Covers what `other`, the next piece of the same hair, covers too, with its own opacity.
+    /// Covers what `other`, the next segment of the same hair, covers too, with its own opacity.
     #[inline(always)]
     pub fn join(&mut self, other: &Self) {
         // Opacities of nothing hide nothing.
@@ -161,15 +162,15 @@ impl Fragment {
     /// Sorts by depth, then id, then in the order of drawing: positive floats are ordered as their bits.
     #[inline(always)]
     pub fn order(&self) -> (u64, u32) {
-        (u64::from(self.z_m.to_bits()) << 32 | u64::from(self.id), self.streak)
+        (u64::from(self.z_m.to_bits()) << 32 | u64::from(self.id), self.ribbon_row)
     }
 }
 
 /// A row of a ribbon, or a column where it lies flat: what its fragments have in common.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Streak {
+pub struct RibbonRow {
     /// Radiance of the opaque hair, linear RGB.
     pub radiance: Vec3,
-    /// Number of the piece among those that were drawn.
-    pub stroke: u32,
+    /// Number of the segment among those that were drawn.
+    pub surface: u32,
 }

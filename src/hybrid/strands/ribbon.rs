@@ -1,6 +1,6 @@
 //! One ribbon to fragments: the exact share of every pixel's area, row by row (or column by column where it lies flat).
 
-use super::Knot;
+use super::RibbonPoint;
 use crate::math::lanes::{F32s, Isa, MOST, Row};
 
 /// A rectangle of pixels: first column and row, one past the last.
@@ -19,25 +19,25 @@ pub struct Share {
     pub pixel: [i32; 2],
     /// Covered share of the pixel's area.
     pub coverage: f32,
-    /// Where the middle of the covered piece lies between the knots on the picture.
+    /// Where the middle of the covered segment lies between the ribbon points on the picture.
     pub linear: f32,
     /// The same along the hair: perspective undone.
     pub along: f32,
 }
 
-/// Calls `emit` for each pixel of `window` that the ribbon between two knots covers.
+/// Calls `emit` for each pixel of `window` that the ribbon between two ribbon points covers.
 ///
-/// The ribbon is cut across its major axis at its ends, so pieces of a strand that share an end and an axis neither
+/// The ribbon is cut across its major axis at its ends, so segments of a strand that share an end and an axis neither
 /// overlap nor gap, and the coverages of a whole ribbon sum to its area.
 #[inline(always)]
-pub fn rasterise(a: &Knot, b: &Knot, window: Window, emit: impl FnMut(Share)) {
+pub fn rasterise(a: &RibbonPoint, b: &RibbonPoint, window: Window, emit: impl FnMut(Share)) {
     let (dx, dy) = (b.x - a.x, b.y - a.y);
     if dy.abs() >= dx.abs() {
-        let at = |k: &Knot| Point { minor: k.x, major: k.y, half: k.half_px, z_m: k.z_m };
+        let at = |k: &RibbonPoint| Point { minor: k.x, major: k.y, half: k.half_px, z_m: k.z_m };
         let bounds = Bounds { minor: [window.from[0], window.to[0]], major: [window.from[1], window.to[1]] };
         sweep::<false>(at(a), at(b), bounds, emit);
     } else {
-        let at = |k: &Knot| Point { minor: k.y, major: k.x, half: k.half_px, z_m: k.z_m };
+        let at = |k: &RibbonPoint| Point { minor: k.y, major: k.x, half: k.half_px, z_m: k.z_m };
         let bounds = Bounds { minor: [window.from[1], window.to[1]], major: [window.from[0], window.to[0]] };
         sweep::<true>(at(a), at(b), bounds, emit);
     }
@@ -142,9 +142,9 @@ pub struct Narrow {
 }
 
 impl Narrow {
-    /// Of the ribbon between two knots; none where it is too wide.
+    /// Of the ribbon between two ribbon points; none where it is too wide.
     #[inline(always)]
-    pub fn new(a: &Knot, b: &Knot, window: Window) -> Option<Self> {
+    pub fn new(a: &RibbonPoint, b: &RibbonPoint, window: Window) -> Option<Self> {
         let flat = (b.y - a.y).abs() < (b.x - a.x).abs();
         let axes = if flat { [1, 0] } else { [0, 1] };
         let (from, to) = ([a.x, a.y], [b.x, b.y]);

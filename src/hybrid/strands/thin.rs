@@ -6,7 +6,7 @@
 //! hairs cover as much as before.
 
 use crate::data::strands::Strands;
-use crate::stage::projection::View;
+use crate::stage::projection::Projection;
 
 /// Least share of the hairs that is left.
 const LEAST: f32 = 1.0 / 64.0;
@@ -16,14 +16,14 @@ const FADING: f32 = 0.125;
 /// Which hairs of a picture are drawn, and how much wider than they are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thinning {
-    view: View,
+    view: Projection,
     /// Width that hairs are to have at their roots, px; none where every hair is drawn as it is.
     hair_px: f32,
 }
 
 impl Thinning {
     /// For pictures of `view`, where hairs are to be at least `hair_px` wide; 0 draws every hair.
-    pub fn new(view: &View, hair_px: f32) -> Self {
+    pub fn new(view: &Projection, hair_px: f32) -> Self {
         Self { view: *view, hair_px }
     }
 

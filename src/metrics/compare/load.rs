@@ -1,6 +1,6 @@
 //! Pictures from files.
 
-use super::Light;
+use super::LinearImage;
 use crate::data::image::linear_from_srgb;
 use crate::error::{Error, Result};
 use crate::math::Vec3;
@@ -13,7 +13,7 @@ const MAX_EDGE: u32 = 16_384;
 ///
 /// # Errors
 /// [`crate::error::Kind::Input`] naming the file where it is missing, of another kind, broken or larger than 16384 pixels.
-pub fn load(path: &Path) -> Result<Light> {
+pub fn load(path: &Path) -> Result<LinearImage> {
     let extension = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase);
     match extension.as_deref() {
         Some("png") => load_png(path),
@@ -27,7 +27,7 @@ fn broken(error: impl std::fmt::Display) -> Error {
     Error::input("the picture cannot be read").with_found(error)
 }
 
-fn load_png(path: &Path) -> Result<Light> {
+fn load_png(path: &Path) -> Result<LinearImage> {
     let mut reader = image::ImageReader::open(path).map_err(broken)?.with_guessed_format().map_err(broken)?;
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(MAX_EDGE);
@@ -36,7 +36,7 @@ fn load_png(path: &Path) -> Result<Light> {
     let pixels = reader.decode().map_err(broken)?.into_rgba32f();
     let (width, height) = (pixels.width() as usize, pixels.height() as usize);
     let of = |p: &image::Rgba<f32>| Vec3::new(p[0], p[1], p[2]).map(linear_from_srgb) * p[3];
-    Ok(Light {
+    Ok(LinearImage {
         width,
         height,
         colour: pixels.pixels().map(of).collect(),
@@ -44,7 +44,7 @@ fn load_png(path: &Path) -> Result<Light> {
     })
 }
 
-fn load_exr(path: &Path) -> Result<Light> {
+fn load_exr(path: &Path) -> Result<LinearImage> {
     let meta = exr::meta::MetaData::read_from_file(path, false).map_err(broken)?;
     if let Some(size) = meta.headers.iter().map(|h| h.layer_size).find(|s| s.0.max(s.1) > MAX_EDGE as usize) {
         return Err(Error::input("the picture is too large")
@@ -54,13 +54,13 @@ fn load_exr(path: &Path) -> Result<Light> {
     }
     let image = exr::prelude::read_first_rgba_layer_from_file(
         path,
-        |size: exr::math::Vec2<usize>, _| Light {
+        |size: exr::math::Vec2<usize>, _| LinearImage {
             width: size.0,
             height: size.1,
             colour: vec![Vec3::ZERO; size.0 * size.1],
             alpha: vec![1.0; size.0 * size.1],
         },
-        |light: &mut Light, at: exr::math::Vec2<usize>, (r, g, b, a): (f32, f32, f32, f32)| {
+        |light: &mut LinearImage, at: exr::math::Vec2<usize>, (r, g, b, a): (f32, f32, f32, f32)| {
             let i = at.1 * light.width + at.0;
             light.colour[i] = Vec3::new(r, g, b);
             light.alpha[i] = a;

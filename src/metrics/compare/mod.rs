@@ -16,7 +16,7 @@ pub const PIXELS_PER_DEGREE: f32 = 67.0;
 
 /// A picture in linear light, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Light {
+pub struct LinearImage {
     /// Pixels per row.
     pub width: usize,
     /// Rows.
@@ -27,7 +27,7 @@ pub struct Light {
     pub alpha: Vec<f32>,
 }
 
-impl From<&Film> for Light {
+impl From<&Film> for LinearImage {
     fn from(film: &Film) -> Self {
         Self { width: film.width, height: film.height, colour: film.radiance.clone(), alpha: film.alpha.clone() }
     }
@@ -56,8 +56,8 @@ pub struct Difference {
 ///
 /// # Errors
 /// [`crate::error::Kind::Input`] where the sizes differ, a picture is empty, or a value is not a finite number.
-pub fn compare(reference: &Light, other: &Light) -> Result<Difference> {
-    let size = |light: &Light| format!("{} x {}", light.width, light.height);
+pub fn compare(reference: &LinearImage, other: &LinearImage) -> Result<Difference> {
+    let size = |light: &LinearImage| format!("{} x {}", light.width, light.height);
     if (reference.width, reference.height) != (other.width, other.height) || reference.colour.is_empty() {
         return Err(Error::input("the pictures cannot be laid over each other")
             .with_field("size")
@@ -97,7 +97,7 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 }
 
 /// Fixed exposure (none), sRGB coding, clamped to what a screen shows.
-fn coded(light: &Light) -> Vec<Vec3> {
+fn coded(light: &LinearImage) -> Vec<Vec3> {
     light.colour.iter().map(|c| c.map(|v| srgb_from_linear(v.clamp(0.0, 1.0)))).collect()
 }
 
@@ -113,7 +113,7 @@ fn flip(coded: &[Vec<Vec3>; 2], width: usize, height: usize, counted: &[usize]) 
     (mean(errors.iter().map(|&e| f64::from(e))), f64::from(p95))
 }
 
-fn rel_mse(reference: &Light, other: &Light, counted: &[usize]) -> f64 {
+fn rel_mse(reference: &LinearImage, other: &LinearImage, counted: &[usize]) -> f64 {
     mean(counted.iter().map(|&i| {
         let (b, a) = (reference.colour[i].as_dvec3(), other.colour[i].as_dvec3());
         let ratio = (a - b) * (a - b) / (b * b + 0.01);
@@ -127,7 +127,7 @@ fn psnr_db(coded: &[Vec<Vec3>; 2]) -> Option<f64> {
     (mse > 0.0).then(|| -10.0 * libm::log10(mse))
 }
 
-fn bias(reference: &Light, other: &Light) -> f64 {
+fn bias(reference: &LinearImage, other: &LinearImage) -> f64 {
     let [b, a] = [reference, other].map(|l| mean(l.colour.iter().map(|c| f64::from(c.dot(LUMA)))));
     if b == 0.0 && a == 0.0 { 0.0 } else { (a - b) / b }
 }

@@ -82,7 +82,7 @@ impl<'a> Renderer<'a> {
         self.tiles.iter().map(|tile| tile.bytes).sum()
     }
 
-    /// Uploads a pose: everything that is drawn but for camera and light. `scene` wears the tiles that this was made with.
+    /// Uploads a pose: everything that is drawn but for camera and light. `scene` carries the tiles that this was made with.
     ///
     /// # Errors
     /// [`crate::error::Kind::Input`] for broken textures; [`crate::error::Kind::Device`] where one is too large.

@@ -201,7 +201,7 @@ pub struct GpuFur {
     pub shell_vertices: u32,
     /// Vertices of all fins.
     pub fin_vertices: u32,
-    /// Tile it wears.
+    /// Tile it carries.
     pub tile: usize,
     /// Whether its shells take turns with those of the one before it.
     pub over_last: bool,

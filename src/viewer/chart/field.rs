@@ -2,7 +2,7 @@
 
 use super::colours::{CROWN, LENGTHS, SADDLE};
 use super::shapes::Shapes;
-use super::{Worn, stage};
+use super::{CoveredPart, stage};
 use crate::data::mesh::Mesh;
 use crate::fur::field::singularities;
 use crate::math::Vec3;
@@ -18,8 +18,8 @@ const LEANS: f32 = 0.02;
 const BALL: f32 = 0.009;
 
 /// See [`super::draw`].
-pub(super) fn draw<'a>(all: &[Worn<'_>]) -> (Vec<SkinMesh<'a>>, Vec<String>) {
-    let furs: Vec<CoatMesh<'_>> = all.iter().map(|worn| stage::fur(worn.posed, worn.worn)).collect();
+pub(super) fn draw<'a>(all: &[CoveredPart<'_>]) -> (Vec<SkinMesh<'a>>, Vec<String>) {
+    let furs: Vec<CoatMesh<'_>> = all.iter().map(|covered| stage::fur(covered.posed, covered.primitive)).collect();
     let used = || furs.iter().flat_map(|fur| fur.triangles.iter().flatten().map(move |&v| (fur, v as usize)));
     let lengths = || used().map(|(fur, v)| fur.offsets_m[v].length());
     let (least, most) = (lengths().fold(f32::INFINITY, f32::min), lengths().fold(0.0, f32::max));
@@ -32,7 +32,7 @@ pub(super) fn draw<'a>(all: &[Worn<'_>]) -> (Vec<SkinMesh<'a>>, Vec<String>) {
     let mut skins: Vec<SkinMesh<'a>> = Vec::new();
     let (mut crowns, mut saddles) = (0, 0);
     let mut signs = Shapes::default();
-    for (worn, fur) in all.iter().zip(&furs) {
+    for (covered, fur) in all.iter().zip(&furs) {
         let shade = |v: usize| {
             let share = (fur.offsets_m[v].length() - least) / (most - least);
             LENGTHS[0].lerp(LENGTHS[1], if most > least * 1.001 { share } else { 0.5 })
@@ -45,7 +45,7 @@ pub(super) fn draw<'a>(all: &[Worn<'_>]) -> (Vec<SkinMesh<'a>>, Vec<String>) {
             ..SkinMesh::default()
         });
         strokes(fur, spacing_m, &mut signs);
-        for (position_m, index) in turns(worn, fur) {
+        for (position_m, index) in turns(covered, fur) {
             let ball = if index > 0 { &mut crowns } else { &mut saddles };
             *ball += 1;
             signs.ball(position_m, radius_m, if index > 0 { CROWN } else { SADDLE });
@@ -69,13 +69,13 @@ fn area_m2(fur: &CoatMesh<'_>, triangle: [u32; 3]) -> f32 {
 }
 
 /// Where the hair's direction along the skin turns round itself, and how often.
-fn turns(worn: &Worn<'_>, fur: &CoatMesh<'_>) -> Vec<(Vec3, i32)> {
-    let base = |v: u32| worn.worn.base_vertex[v as usize];
+fn turns(covered: &CoveredPart<'_>, fur: &CoatMesh<'_>) -> Vec<(Vec3, i32)> {
+    let base = |v: u32| covered.primitive.base_vertex[v as usize];
     let mesh = Mesh {
-        positions_m: worn.posed.positions_m.clone(),
-        normals: worn.posed.normals.clone(),
+        positions_m: covered.posed.positions_m.clone(),
+        normals: covered.posed.normals.clone(),
         triangles: fur.triangles.iter().map(|t| t.map(base)).collect(),
-        position_class: worn.part.stored.position_class.clone(),
+        position_class: covered.part.stored.position_class.clone(),
         ..Mesh::default()
     };
     let normals = mesh.smooth_normals();

@@ -34,11 +34,11 @@ pub enum Chart {
     Stretch,
 }
 
-/// A part in its pose and what it wears.
-struct Worn<'a> {
+/// A part in its pose and what it carries.
+struct CoveredPart<'a> {
     part: &'a Part,
     posed: &'a Posed,
-    worn: &'a CoatPrimitive,
+    primitive: &'a CoatPrimitive,
 }
 
 /// A chart's surfaces and its legend, one sentence each.
@@ -61,10 +61,10 @@ pub fn draw<'a>(asset: &'a Asset, coat: &'a Coat, pose: &Pose, chart: Chart, til
     let mut skins = Vec::new();
     let mut all = Vec::new();
     for (part, posed) in &posed {
-        let wears = |w: &&CoatPrimitive| (w.mesh, w.primitive) == (part.mesh, part.primitive);
-        let worn: Vec<&CoatPrimitive> = coat.primitives.iter().filter(wears).collect();
-        skins.push(bare(part, posed, &worn));
-        all.extend(worn.into_iter().map(|worn| Worn { part, posed, worn }));
+        let covers = |w: &&CoatPrimitive| (w.mesh, w.primitive) == (part.mesh, part.primitive);
+        let covered: Vec<&CoatPrimitive> = coat.primitives.iter().filter(covers).collect();
+        skins.push(bare(part, posed, &covered));
+        all.extend(covered.into_iter().map(|primitive| CoveredPart { part, posed, primitive }));
     }
     let (more, legend) = match chart {
         Chart::Field => field::draw(&all),
@@ -97,8 +97,8 @@ pub fn tile_outline() -> Image8 {
     image
 }
 
-fn bare<'a>(part: &Part, posed: &Posed, worn: &[&CoatPrimitive]) -> SkinMesh<'a> {
-    let triangles = stage::uncovered(part, worn);
+fn bare<'a>(part: &Part, posed: &Posed, covered: &[&CoatPrimitive]) -> SkinMesh<'a> {
+    let triangles = stage::uncovered(part, covered);
     let count = posed.positions_m.len();
     SkinMesh {
         positions_m: posed.positions_m.clone(),
@@ -109,10 +109,10 @@ fn bare<'a>(part: &Part, posed: &Posed, worn: &[&CoatPrimitive]) -> SkinMesh<'a>
     }
 }
 
-impl Worn<'_> {
-    /// The skin's triangles that wear the coat, and the coat's coordinates on them; rest pose.
+impl CoveredPart<'_> {
+    /// The skin's triangles that carry the coat, and the coat's coordinates on them; rest pose.
     fn laid(&self, coat: &Coat) -> Result<(Mesh, Patches)> {
-        let w = self.worn;
+        let w = self.primitive;
         let triangles = w.triangles.iter().map(|t| t.map(|v| w.base_vertex[v as usize])).collect();
         let mesh = Mesh { triangles, ..self.part.mesh(coat.metres_per_unit)? };
         let patches = Patches {
@@ -127,8 +127,13 @@ impl Worn<'_> {
 
     /// A skin of every triangle by itself, each in one colour.
     fn facets<'a>(&self, colour: impl Fn(usize) -> Vec3) -> SkinMesh<'a> {
-        let base: Vec<usize> =
-            self.worn.triangles.iter().flatten().map(|&v| self.worn.base_vertex[v as usize] as usize).collect();
+        let base: Vec<usize> = self
+            .primitive
+            .triangles
+            .iter()
+            .flatten()
+            .map(|&v| self.primitive.base_vertex[v as usize] as usize)
+            .collect();
         SkinMesh {
             positions_m: base.iter().map(|&v| self.posed.positions_m[v]).collect(),
             normals: base.iter().map(|&v| self.posed.normals[v]).collect(),

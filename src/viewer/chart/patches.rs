@@ -1,6 +1,6 @@
 //! A colour for each patch.
 
-use super::Worn;
+use super::CoveredPart;
 use super::colours::DISTINCT;
 use super::shapes::Shapes;
 use crate::asset::material::Wrap;
@@ -16,21 +16,25 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 const LINE: f32 = 0.002;
 
 /// See [`super::draw`].
-pub(super) fn draw<'a>(all: &[Worn<'_>], coat: &Coat, tile: &'a Image8) -> Result<(Vec<SkinMesh<'a>>, Vec<String>)> {
+pub(super) fn draw<'a>(
+    all: &[CoveredPart<'_>],
+    coat: &Coat,
+    tile: &'a Image8,
+) -> Result<(Vec<SkinMesh<'a>>, Vec<String>)> {
     let mut skins = Vec::with_capacity(all.len());
     let (mut patches, mut seams_m) = (0, 0.0);
     let mut lines = Shapes::default();
-    for worn in all {
-        let colours = colours(worn);
+    for covered in all {
+        let colours = colours(covered);
         patches += colours.len();
-        let of_triangle = |t: usize| colours[&worn.worn.patch[worn.worn.triangles[t][0] as usize]];
-        let uv = worn.worn.triangles.iter().flatten().map(|&v| worn.worn.uv[v as usize]).collect();
-        skins.push(SkinMesh { uv, texture: Some((tile, [Wrap::Repeat; 2])), ..worn.facets(of_triangle) });
-        let (mesh, laid) = worn.laid(coat)?;
+        let of_triangle = |t: usize| colours[&covered.primitive.patch[covered.primitive.triangles[t][0] as usize]];
+        let uv = covered.primitive.triangles.iter().flatten().map(|&v| covered.primitive.uv[v as usize]).collect();
+        skins.push(SkinMesh { uv, texture: Some((tile, [Wrap::Repeat; 2])), ..covered.facets(of_triangle) });
+        let (mesh, laid) = covered.laid(coat)?;
         for ends in patch::seam_edges(&mesh, &laid) {
-            let base = ends.map(|v| worn.worn.base_vertex[v as usize] as usize);
-            let [a, b] = base.map(|v| worn.posed.positions_m[v]);
-            let normal = base.iter().map(|&v| worn.posed.normals[v]).sum::<Vec3>().normalize_or(Vec3::Y);
+            let base = ends.map(|v| covered.primitive.base_vertex[v as usize] as usize);
+            let [a, b] = base.map(|v| covered.posed.positions_m[v]);
+            let normal = base.iter().map(|&v| covered.posed.normals[v]).sum::<Vec3>().normalize_or(Vec3::Y);
             lines.line([a, b], normal, LINE * mesh.diagonal_m());
             seams_m += a.distance(b);
         }
@@ -45,9 +49,9 @@ pub(super) fn draw<'a>(all: &[Worn<'_>], coat: &Coat, tile: &'a Image8) -> Resul
 }
 
 /// A colour per patch: the one least used so far that no neighbour has.
-fn colours(worn: &Worn<'_>) -> BTreeMap<u32, Vec3> {
-    let w = worn.worn;
-    let class = |v: u32| worn.part.stored.position_class[w.base_vertex[v as usize] as usize];
+fn colours(covered: &CoveredPart<'_>) -> BTreeMap<u32, Vec3> {
+    let w = covered.primitive;
+    let class = |v: u32| covered.part.stored.position_class[w.base_vertex[v as usize] as usize];
     let mut beside: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
     let mut at_edge: HashMap<(u32, u32), u32> = HashMap::new();
     for triangle in &w.triangles {

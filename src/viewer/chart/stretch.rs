@@ -1,6 +1,6 @@
 //! How far the texture is stretched or squeezed, triangle by triangle.
 
-use super::Worn;
+use super::CoveredPart;
 use super::colours::{BEYOND, diverging};
 use crate::data::coat::Coat;
 use crate::error::Result;
@@ -12,13 +12,13 @@ use crate::runtime::SkinMesh;
 const ENDS: [f64; 2] = [0.7, 1.4];
 
 /// See [`super::draw`].
-pub(super) fn draw<'a>(all: &[Worn<'_>], coat: &Coat) -> Result<(Vec<SkinMesh<'a>>, Vec<String>)> {
+pub(super) fn draw<'a>(all: &[CoveredPart<'_>], coat: &Coat) -> Result<(Vec<SkinMesh<'a>>, Vec<String>)> {
     let mut skins = Vec::with_capacity(all.len());
     let mut values = Vec::new();
-    for worn in all {
-        let of_triangle = farthest(worn, coat)?;
+    for covered in all {
+        let of_triangle = farthest(covered, coat)?;
         values.extend(of_triangle.iter().flatten().copied());
-        skins.push(worn.facets(|t| of_triangle[t].map_or(BEYOND, |(value, _)| colour(value))));
+        skins.push(covered.facets(|t| of_triangle[t].map_or(BEYOND, |(value, _)| colour(value))));
     }
     values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let area: f64 = values.iter().map(|v| v.1).sum();
@@ -44,9 +44,9 @@ pub(super) fn draw<'a>(all: &[Worn<'_>], coat: &Coat) -> Result<(Vec<SkinMesh<'a
 }
 
 /// Per coat triangle: the singular value farthest from 1, and the triangle's area; `None` without area.
-fn farthest(worn: &Worn<'_>, coat: &Coat) -> Result<Vec<Option<(f64, f64)>>> {
-    let (mesh, patches) = worn.laid(coat)?;
-    let edge_m = f64::from(coat.tiles[worn.worn.tile].edge_m);
+fn farthest(covered: &CoveredPart<'_>, coat: &Coat) -> Result<Vec<Option<(f64, f64)>>> {
+    let (mesh, patches) = covered.laid(coat)?;
+    let edge_m = f64::from(coat.tiles[covered.primitive.tile].edge_m);
     let values = patch::singular_values(&mesh, edge_m, &patches);
     let pick = |(t, values): (usize, Option<[f64; 2]>)| {
         let [large, small] = values?;

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 /// Columns of depths by level that several prisms share: over vertices and over the middles of edges, where every prism's
 /// lattice has corners. Filled by whichever prism is first to need one, from the prism that lies first in space.
 #[derive(Debug)]
-pub(super) struct Columns {
+pub(super) struct SharedColumns {
     /// By position class.
     vertices: Vec<OnceLock<Box<[u8]>>>,
     /// The first triangle around each position class, and which of its corners that is.
@@ -30,7 +30,7 @@ impl Site<'_> {
     }
 }
 
-impl Columns {
+impl SharedColumns {
     pub(super) fn new(shell: &Shell<'_>) -> Self {
         let order = |t: u32| shell.skin.order_in_space(t as usize);
         let classes = &shell.skin.position_class;

@@ -1,6 +1,6 @@
 //! What fills the shell, whatever the view: the skin's corners, the hair over them, and the tables of its heights.
 
-use super::Steps;
+use super::MarchSteps;
 use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa};
@@ -135,7 +135,7 @@ impl<'a> Content<'a> {
 
     /// Hair area of both kinds above heights per skin area.
     #[inline(always)]
-    pub fn above<I: Isa>(&self, prisms: &Prisms, steps: &Steps<I>) -> F32s<I> {
+    pub fn above<I: Isa>(&self, prisms: &Prisms, steps: &MarchSteps<I>) -> F32s<I> {
         prisms.density(steps.b) * prisms.length(steps.b) * self.above.at_lanes(steps.t)
     }
 

@@ -1,13 +1,13 @@
 //! The key light's shadow in undercoat, stored by sub-element.
 
-use super::columns::{Columns, Site};
+use super::columns::{SharedColumns, Site};
 use super::volume::Volume;
-use super::{Journey, Start, Stepping};
+use super::{MarchRay, Start, Stepping};
 use crate::data::light::Light;
 use crate::volume::mean::MeanShadow;
 use crate::volume::shell::block;
 use crate::volume::shell::lattice::{self, Lattice};
-use crate::volume::shell::prism::Place;
+use crate::volume::shell::prism::ShellPoint;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -24,7 +24,7 @@ pub const DARK_AT_BORDERS: f32 = 15.0;
 pub const TOWARDS_LIGHT: Stepping = Stepping { depth: 0.5, layers: 0.5 };
 
 /// How much longer they become with each optical depth passed: what lies in deep shadow has little light to be wrong about.
-pub const HASTE: f32 = 0.25;
+pub const STEP_GROWTH: f32 = 0.25;
 
 /// Optical depth of undercoat, and of guard hair in the mean, between the corners of sub-elements and the key light, filled
 /// prism by prism when first needed.
@@ -35,7 +35,7 @@ pub struct Shadows<'a> {
     mean: Option<&'a MeanShadow<'a>>,
     key: Light,
     lattices: Vec<OnceLock<Lattice>>,
-    columns: Columns,
+    columns: SharedColumns,
     /// Time spent filling, summed over threads, ns.
     spent_ns: AtomicU64,
 }
@@ -46,7 +46,7 @@ impl<'a> Shadows<'a> {
     pub fn new(volume: &'a Volume<'a>, mean: Option<&'a MeanShadow<'a>>, key: Light) -> Self {
         let shell = volume.shell();
         let lattices = std::iter::repeat_with(OnceLock::new).take(shell.skin.triangles.len()).collect();
-        Self { volume, mean, key, lattices, columns: Columns::new(shell), spent_ns: AtomicU64::new(0) }
+        Self { volume, mean, key, lattices, columns: SharedColumns::new(shell), spent_ns: AtomicU64::new(0) }
     }
 
     /// Bytes filled.
@@ -80,21 +80,21 @@ impl<'a> Shadows<'a> {
         let shell = volume.shell();
         let (d, last) = (volume.shadow_subdivisions(triangle), volume.layers());
         let levels = last as usize + 1;
-        let sites: Vec<Site<'_>> = lattice::places(d).map(|b| self.columns.site(shell, triangle, b)).collect();
+        let sites: Vec<Site<'_>> = lattice::points(d).map(|b| self.columns.site(shell, triangle, b)).collect();
         let waiting: Vec<usize> = (0..sites.len()).filter(|&i| sites[i].stored().is_none()).collect();
         let t_of = |level: usize| level as f32 / last as f32;
-        let journey = |site: &Site<'_>, level: usize| {
-            let place = Place { b: [site.b.y, site.b.z], t: t_of(level) };
-            let start = Start { at_m: 0.0, triangle: site.triangle, place };
-            let origin_m = shell.prism(site.triangle).jacobian(&place).at_m;
-            Journey { origin_m, direction: self.key.at(origin_m).to_light, start, far_m: f32::INFINITY }
+        let march_ray = |site: &Site<'_>, level: usize| {
+            let point = ShellPoint { b: [site.b.y, site.b.z], t: t_of(level) };
+            let start = Start { at_m: 0.0, triangle: site.triangle, point };
+            let origin_m = shell.prism(site.triangle).jacobian(&point).at_m;
+            MarchRay { origin_m, direction: self.key.at(origin_m).to_light, start, far_m: f32::INFINITY }
         };
-        let journeys: Vec<Journey> = (0..levels)
+        let rays: Vec<MarchRay> = (0..levels)
             .flat_map(|level| waiting.iter().map(move |&i| (i, level)))
-            .map(|(i, level)| journey(&sites[i], level))
+            .map(|(i, level)| march_ray(&sites[i], level))
             .collect();
         let enough = if shell.neighbours.at_border(triangle) { DARK_AT_BORDERS } else { DARK };
-        let (depths, mut other_ns) = volume.depths_along(&journeys, &TOWARDS_LIGHT, HASTE, enough);
+        let (depths, mut other_ns) = volume.depths_along(&rays, &TOWARDS_LIGHT, STEP_GROWTH, enough);
         let mut codes = vec![0; sites.len() * levels];
         for (site, codes) in sites.iter().zip(codes.chunks_exact_mut(levels)) {
             if let Some(stored) = site.stored() {

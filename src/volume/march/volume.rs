@@ -1,7 +1,7 @@
 //! The shell's undercoat at the resolution of a view: density by sub-element, and the law that turns it into optical depth.
 
 use super::content::Content;
-use super::{From, Steps};
+use super::{From, MarchSteps};
 use crate::fur::groom::clump::Nearby;
 use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, Vec3Row, Vec3s};
@@ -106,9 +106,9 @@ impl<'a> Volume<'a> {
         blocks: &Blocks<'_>,
         from: &From<I>,
         length_m: F32s<I>,
-    ) -> Steps<I> {
+    ) -> MarchSteps<I> {
         let zero = F32s::splat(0.0);
-        let middle = from.places.moved(from.rates, length_m * 0.5).inside();
+        let middle = from.points.moved(from.rates, length_m * 0.5).inside();
         let b = middle.barycentric();
         let content = self.content;
         let undercoat = &content.shell.undercoat;
@@ -121,14 +121,14 @@ impl<'a> Volume<'a> {
         // Not √(1 − cos²), which rounds to a thousandth where a ray runs along the hair.
         let sine = undercoat.mean_sines(hair.cross(from.direction).length());
         let length_per_volume = per_volume * up_m * content.reaching(middle.t) * undercoat.stretch;
-        let begin_t = from.places.t;
+        let begin_t = from.points.t;
         let ends = (content.reach_at(begin_t) - content.reach_at(begin_t + from.rates.z * length_m)).abs();
         let diameter_m = undercoat.diameter_m;
         // Once per hair, whichever end faces the ray: a cylinder's shadow is its side's and one end's.
         let end_m2 = cosine.abs() * (FRAC_PI_4 * diameter_m * diameter_m);
         let end_depth = ends.gt(zero).keep(per_volume * ends / from.rates.z.abs() * end_m2);
         let depth = length_per_volume * sine * length_m * diameter_m + end_depth;
-        Steps {
+        MarchSteps {
             from_m: from.at_m,
             length_m,
             b,

@@ -1,4 +1,4 @@
-//! Where the mean shadow's columns stand: over the skin's vertices, and over places between them where triangles are wide for
+//! Where the mean shadow's columns stand: over the skin's vertices, and over points between them where triangles are wide for
 //! their hair.
 
 use crate::math::Vec3;
@@ -15,10 +15,10 @@ const MOST_PER_VERTEX: usize = 3;
 
 /// Columns by number: those over position classes first, then those between vertices.
 #[derive(Debug)]
-pub(super) struct Columns {
+pub(super) struct MeanColumns {
     /// Where each triangle's begin in `numbers`, and how often it is split.
     lattices: Vec<(u32, u32)>,
-    /// Columns over the corners of triangles' lattices, in the order of [`lattice::places`].
+    /// Columns over the corners of triangles' lattices, in the order of [`lattice::points`].
     numbers: Vec<u32>,
     /// Those over vertices.
     vertices: usize,
@@ -37,7 +37,7 @@ struct Edge {
     first: Option<u32>,
 }
 
-impl Columns {
+impl MeanColumns {
     /// No farther apart than `span_m`, if so many can be kept.
     pub(super) fn new(shell: &Shell<'_>, span_m: f32) -> Self {
         let triangles = shell.skin.triangles.len();
@@ -72,7 +72,7 @@ impl Columns {
     fn split(&mut self, shell: &Shell<'_>, edges: &mut HashMap<[u32; 2], Edge>, t: u32, d: u32) {
         let classes = classes(shell, t);
         let n = 1_u32 << d;
-        for b in lattice::places(d) {
+        for b in lattice::points(d) {
             let steps = b.to_array().map(|part| (part * n as f32) as u32);
             let number = if let Some(corner) = steps.iter().position(|&steps| steps == n) {
                 classes[corner]

@@ -4,19 +4,19 @@
 //! one square.
 
 use crate::math::Vec3;
-use crate::volume::bins::{Bins, Grid, Reach, TILE};
+use crate::volume::bins::{Bins, Reach, TILE, TileGrid};
 use crate::volume::shell::Shell;
 use crate::volume::shell::outer::{self, corner};
-use crate::volume::shell::prism::Place;
+use crate::volume::shell::prism::ShellPoint;
 use rayon::prelude::*;
 
 /// Where a ray towards the light leaves hair, as far as prisms are not inside out: there it is the other way around.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Meeting {
+pub(super) struct Exit {
     /// Distance from the ray's origin, m.
     pub(super) at_m: f32,
     pub(super) triangle: u32,
-    pub(super) place: Place,
+    pub(super) point: ShellPoint,
 }
 
 /// Skin, tips and borders over all triangles, in this order.
@@ -28,11 +28,11 @@ pub(super) struct Faces {
     low_m: [f32; 2],
     /// Squares' edges over tiles' pixels.
     px_per_m: f32,
-    grid: Grid,
+    grid: TileGrid,
     bins: Bins,
     triangles: usize,
     /// Those after the skin.
-    outer: Vec<(u32, [Place; 3])>,
+    outer: Vec<(u32, [ShellPoint; 3])>,
     /// Corners of all, as the light sees them.
     corners: Vec<[Vec3; 3]>,
 }
@@ -54,7 +54,7 @@ impl Faces {
             axes: [across, to_light.cross(across), to_light],
             low_m: [0.0; 2],
             px_per_m: 1.0,
-            grid: Grid::whole([1, 1]),
+            grid: TileGrid::whole([1, 1]),
             bins: Bins::default(),
             triangles,
             outer: (0..triangles as u32).flat_map(of_triangle).collect(),
@@ -77,7 +77,7 @@ impl Faces {
         }
         faces.low_m = [low.x, low.y];
         faces.px_per_m = TILE as f32 / square_m;
-        faces.grid = Grid::whole([extent_m.x, extent_m.y].map(|e| (e * faces.px_per_m) as usize + 1));
+        faces.grid = TileGrid::whole([extent_m.x, extent_m.y].map(|e| (e * faces.px_per_m) as usize + 1));
         faces.bins = Bins::new(&faces.grid, count, |i| {
             let mut reach = Reach::NOTHING;
             for &p in &faces.corners[i] {
@@ -103,7 +103,7 @@ impl Faces {
         [(seen.x - self.low_m[0]) * self.px_per_m, (seen.y - self.low_m[1]) * self.px_per_m]
     }
 
-    fn places(&self, face: usize) -> (u32, [Place; 3]) {
+    fn points(&self, face: usize) -> (u32, [ShellPoint; 3]) {
         match face.checked_sub(self.triangles) {
             Some(outer) => self.outer[outer],
             None => (face as u32, [0, 1, 2].map(|i| corner(i, 0.0))),
@@ -111,23 +111,23 @@ impl Faces {
     }
 
     fn corners_of(&self, shell: &Shell<'_>, face: usize) -> [Vec3; 3] {
-        let (triangle, places) = self.places(face);
+        let (triangle, points) = self.points(face);
         let corners = shell.skin.triangles[triangle as usize].map(|v| v as usize);
-        places.map(|place| {
-            let v = corners[if place.b[0] > 0.0 {
+        points.map(|point| {
+            let v = corners[if point.b[0] > 0.0 {
                 1
-            } else if place.b[1] > 0.0 {
+            } else if point.b[1] > 0.0 {
                 2
             } else {
                 0
             }];
-            self.seen(shell.skin.positions_m[v] + shell.offsets_m[v] * place.t)
+            self.seen(shell.skin.positions_m[v] + shell.offsets_m[v] * point.t)
         })
     }
 
     /// How far a ray from a point to the light goes before it meets skin, m, and where it leaves hair until there, from
     /// `near_m` on; in no order.
-    pub(super) fn meetings(&self, from_m: Vec3, near_m: f32, out: &mut Vec<Meeting>) -> f32 {
+    pub(super) fn exits(&self, from_m: Vec3, near_m: f32, out: &mut Vec<Exit>) -> f32 {
         out.clear();
         let from = self.seen(from_m);
         let [x, y] = self.px(from);
@@ -159,12 +159,12 @@ impl Faces {
             if !leaves {
                 continue;
             }
-            let (triangle, [p, q, r]) = self.places(face);
+            let (triangle, [p, q, r]) = self.points(face);
             let mix = |p: f32, q: f32, r: f32| e.x * p + e.y * q + e.z * r;
             let b = [0, 1].map(|i| mix(p.b[i], q.b[i], r.b[i]));
-            out.push(Meeting { at_m, triangle, place: Place { b, t: mix(p.t, q.t, r.t) } });
+            out.push(Exit { at_m, triangle, point: ShellPoint { b, t: mix(p.t, q.t, r.t) } });
         }
-        out.retain(|meeting| meeting.at_m <= far_m);
+        out.retain(|exit| exit.at_m <= far_m);
         far_m
     }
 }

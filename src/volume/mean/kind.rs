@@ -9,7 +9,7 @@ pub(super) type Table = [f32; LAYERS * 4 + 1];
 
 /// A kind of hair in the mean.
 #[derive(Clone, Debug)]
-pub(super) struct Kind {
+pub(super) struct HairKind {
     /// Slopes and their spread.
     pub(super) slopes: Undercoat,
     /// Hair width × length along the hair per skin area and height, 1/m, at heights up to the tips.
@@ -18,7 +18,7 @@ pub(super) struct Kind {
     pub(super) width_below_per_m: Table,
 }
 
-impl Kind {
+impl HairKind {
     pub(super) fn new(fibre: &Fibre, shell_m: f32, tips: f32) -> Self {
         let slopes = Undercoat::new(fibre, None);
         let variation = fibre.shape.length_variation;

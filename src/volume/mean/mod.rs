@@ -9,20 +9,20 @@ mod walk;
 
 use super::scene::Scene;
 use super::shell::Shell;
-use super::shell::prism::Place;
+use super::shell::prism::ShellPoint;
 use crate::fur::undercoat::Undercoat;
 use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, MOST, Scalar, U32s};
-use columns::Columns;
-use faces::{Faces, Meeting};
-use kind::Kind;
+use columns::MeanColumns;
+use faces::{Exit, Faces};
+use kind::HairKind;
 use rayon::prelude::*;
 use std::cmp::Ordering::Equal;
 use std::f32::consts::LN_2;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
-use walk::{Ray, Rays, Walk};
+use walk::{Rays, ShadowRay, Walk};
 
 /// Intervals of height up to the tips.
 pub const LAYERS: usize = 24;
@@ -49,15 +49,15 @@ fn between<I: Isa>(depths: &[f32], at: U32s<I>, along: F32s<I>) -> F32s<I> {
 const NARROW: f32 = 0.2;
 
 /// A ray to the light from a height of a column.
-struct Sight {
+struct ColumnRay {
     /// Through the hair around the column.
-    own: Option<Ray>,
+    own: Option<ShadowRay>,
     /// Height of the tips, m.
     tips_m: f32,
     /// Where the ray ends, m from where it begins.
     far_m: f32,
     /// Where the ray leaves hair.
-    meetings: Vec<Meeting>,
+    exits: Vec<Exit>,
 }
 
 /// Hair that a ray passes besides what is around its column, by where the ray leaves it.
@@ -65,7 +65,7 @@ struct Other {
     /// Number of the height at which the ray begins.
     height: usize,
     far_m: f32,
-    meeting: Meeting,
+    exit: Exit,
 }
 
 /// Parts of a depth: the undercoat that a march from prism to prism meets, guard hair beside it, and hair of other limbs.
@@ -93,12 +93,12 @@ pub struct MeanShadow<'a> {
     shell: Shell<'a>,
     /// Height of the tallest hair over the shell's.
     tips: f32,
-    kinds: [Option<Kind>; 2],
+    kinds: [Option<HairKind>; 2],
     to_light: Vec3,
     faces: Faces,
     /// Twice the area of each triangle in the rest pose, m².
     twice_area_m2: Vec<f32>,
-    columns: Columns,
+    columns: MeanColumns,
     /// Whether depths of the hair around go linearly from column to column, by triangle.
     linear: Vec<bool>,
     /// Triangles around each vertex's position class.
@@ -127,7 +127,7 @@ impl<'a> MeanShadow<'a> {
         }
         let shell = Shell::new(scene.skin, scene.fields, of_shell);
         let tips_m = shell_m * tips;
-        let columns = Columns::new(&shell, span * tips_m);
+        let columns = MeanColumns::new(&shell, span * tips_m);
         let goes_linearly = |t: u32| {
             let apart_m = shell.skin.mean_edge_m(t as usize) / (1_u32 << columns.lattice(t).1) as f32;
             shell.neighbours.at_border(t) || apart_m > NARROW * tips_m
@@ -137,7 +137,7 @@ impl<'a> MeanShadow<'a> {
             linear: (0..scene.skin.triangles.len() as u32).map(goes_linearly).collect(),
             shell,
             tips,
-            kinds: [scene.undercoat, guard].map(|fibre| fibre.map(|fibre| Kind::new(fibre, shell_m, tips))),
+            kinds: [scene.undercoat, guard].map(|fibre| fibre.map(|fibre| HairKind::new(fibre, shell_m, tips))),
             to_light,
             twice_area_m2: (0..scene.skin.triangles.len()).map(|t| 2.0 * scene.skin.rest_area_m2(t)).collect(),
             cells: std::iter::repeat_with(OnceLock::new).take(columns.count()).collect(),
@@ -197,7 +197,7 @@ impl<'a> MeanShadow<'a> {
         self.columns.lattice(triangle)
     }
 
-    /// Numbers of columns by triangle and corner of its lattice ([`super::shell::lattice::places`]).
+    /// Numbers of columns by triangle and corner of its lattice ([`super::shell::lattice::points`]).
     pub fn numbers(&self) -> &[u32] {
         self.columns.numbers()
     }
@@ -206,7 +206,7 @@ impl<'a> MeanShadow<'a> {
     pub fn of_columns(&self) -> Vec<f32> {
         let columns = 0..self.columns.count() as u32;
         const NOTHING: Depths = [[0.0; PARTS]; LAYERS + 1];
-        // Of vertices at one place, only one has a column.
+        // Of vertices at one point, only one has a column.
         let is_used = |column: u32| self.around.get(column as usize).is_none_or(|around| !around.is_empty());
         let depths = |column: u32| if is_used(column) { self.cell(column) } else { &NOTHING };
         columns.into_par_iter().flat_map_iter(|column| depths(column).as_flattened().iter().copied()).collect()
@@ -225,7 +225,7 @@ impl<'a> MeanShadow<'a> {
         }
     }
 
-    /// Depth of all but the undercoat that a march meets, at a place of undercoat's shell.
+    /// Depth of all but the undercoat that a march meets, at a point of undercoat's shell.
     pub fn other_depth(&self, triangle: u32, b: Vec3, t: f32) -> f32 {
         self.at(triangle, b, F32s::<Scalar>::splat(t / self.tips))[1].row().0[0]
     }
@@ -266,24 +266,24 @@ impl<'a> MeanShadow<'a> {
                 break;
             }
             let begin = end.saturating_sub(MOST);
-            let sights: Vec<Sight> = (begin..end).map(|i| self.sight(column, i)).collect();
+            let column_rays: Vec<ColumnRay> = (begin..end).map(|i| self.column_ray(column, i)).collect();
             let mut rays = Rays::default();
-            rays.iter_mut().zip(&sights).for_each(|(ray, sight)| *ray = sight.own);
+            rays.iter_mut().zip(&column_rays).for_each(|(ray, column_ray)| *ray = column_ray.own);
             let found = lanes::run(Walk { mean: self, rays: &rays });
-            for ((i, sight), found) in (begin..end).zip(sights).zip(found).rev() {
+            for ((i, column_ray), found) in (begin..end).zip(column_rays).zip(found).rev() {
                 if own[0] + own[1] < DARK {
                     own = found.depths;
                 }
                 depths[i] = [own[0], own[1], 0.0];
-                let Sight { own: ray, tips_m, far_m, mut meetings } = sight;
+                let ColumnRay { own: ray, tips_m, far_m, mut exits } = column_ray;
                 // Where it leaves hair that it has been followed through.
                 let end_m = found.end_m.filter(|_| ray.is_some_and(|ray| ray.onwards)).unwrap_or(f32::NAN);
-                let off = |meeting: &Meeting| (meeting.at_m - end_m).abs();
-                let nearest = (0..meetings.len()).min_by(|&a, &b| off(&meetings[a]).total_cmp(&off(&meetings[b])));
-                if let Some(same) = nearest.filter(|&i| off(&meetings[i]) < MUCH * end_m + SAME * tips_m) {
-                    meetings.remove(same);
+                let off = |exit: &Exit| (exit.at_m - end_m).abs();
+                let nearest = (0..exits.len()).min_by(|&a, &b| off(&exits[a]).total_cmp(&off(&exits[b])));
+                if let Some(same) = nearest.filter(|&i| off(&exits[i]) < MUCH * end_m + SAME * tips_m) {
+                    exits.remove(same);
                 }
-                others.extend(meetings.into_iter().map(|meeting| Other { height: i, far_m, meeting }));
+                others.extend(exits.into_iter().map(|exit| Other { height: i, far_m, exit }));
             }
             end = begin;
         }
@@ -292,7 +292,7 @@ impl<'a> MeanShadow<'a> {
     }
 
     /// The ray to the light from height number `i` of a column.
-    fn sight(&self, column: u32, i: usize) -> Sight {
+    fn column_ray(&self, column: u32, i: usize) -> ColumnRay {
         let t = self.tips * i as f32 / LAYERS as f32;
         let between = self.columns.between(column);
         let (foot_m, offset_m) = match between {
@@ -304,19 +304,18 @@ impl<'a> MeanShadow<'a> {
             None => (self.shell.skin.positions_m[column as usize], self.shell.offsets_m[column as usize]),
         };
         let tips_m = self.tips * offset_m.length();
-        let mut meetings = Vec::new();
+        let mut exits = Vec::new();
         let near_m = NEAR * tips_m;
-        let far_m = self.faces.meetings(foot_m + offset_m * t, near_m, &mut meetings);
+        let far_m = self.faces.exits(foot_m + offset_m * t, near_m, &mut exits);
         // An edge is met in both of its faces. Of these, the one that lies first in space.
-        let order = |meeting: &Meeting| self.shell.skin.order_in_space(meeting.triangle as usize);
-        meetings
-            .sort_by(|a, b| a.at_m.total_cmp(&b.at_m).then_with(|| order(a).partial_cmp(&order(b)).unwrap_or(Equal)));
-        meetings.dedup_by(|next, kept| next.at_m - kept.at_m < near_m);
+        let order = |exit: &Exit| self.shell.skin.order_in_space(exit.triangle as usize);
+        exits.sort_by(|a, b| a.at_m.total_cmp(&b.at_m).then_with(|| order(a).partial_cmp(&order(b)).unwrap_or(Equal)));
+        exits.dedup_by(|next, kept| next.at_m - kept.at_m < near_m);
         let own = match between {
-            Some((triangle, b)) => Some(self.ray(triangle, Place { b: [b.y, b.z], t }, far_m)),
+            Some((triangle, b)) => Some(self.ray(triangle, ShellPoint { b: [b.y, b.z], t }, far_m)),
             None => self.start(column, t, far_m),
         };
-        Sight { own, tips_m, far_m, meetings }
+        ColumnRay { own, tips_m, far_m, exits }
     }
 
     /// Adds the hair that rays from some heights have passed where they leave it, followed back from there.
@@ -324,10 +323,10 @@ impl<'a> MeanShadow<'a> {
         for others in others.chunks(MOST) {
             let mut rays = Rays::default();
             for (ray, other) in rays.iter_mut().zip(others) {
-                let Meeting { at_m, triangle, place } = other.meeting;
-                // Faces are flat and prisms' sides are not: the ray is moved to where its place is.
-                let origin_m = self.shell.prism(triangle).jacobian(&place).at_m - self.to_light * at_m;
-                *ray = Some(Ray { triangle, place, origin_m, far_m: other.far_m, onwards: false });
+                let Exit { at_m, triangle, point } = other.exit;
+                // Faces are flat and prisms' sides are not: the ray is moved to where its point is.
+                let origin_m = self.shell.prism(triangle).jacobian(&point).at_m - self.to_light * at_m;
+                *ray = Some(ShadowRay { triangle, point, origin_m, far_m: other.far_m, onwards: false });
             }
             let found = lanes::run(Walk { mean: self, rays: &rays });
             for (other, found) in others.iter().zip(found) {
@@ -336,31 +335,32 @@ impl<'a> MeanShadow<'a> {
         }
     }
 
-    /// From a place in the prism over a triangle.
-    fn ray(&self, triangle: u32, place: Place, far_m: f32) -> Ray {
-        let jacobian = self.shell.prism(triangle).jacobian(&place);
-        Ray { triangle, place, origin_m: jacobian.at_m, far_m, onwards: jacobian.determinant > 0.0 }
+    /// From a point in the prism over a triangle.
+    fn ray(&self, triangle: u32, point: ShellPoint, far_m: f32) -> ShadowRay {
+        let jacobian = self.shell.prism(triangle).jacobian(&point);
+        ShadowRay { triangle, point, origin_m: jacobian.at_m, far_m, onwards: jacobian.determinant > 0.0 }
     }
 
     /// Where a ray begins above a vertex: in the prism around it into which the light's direction leads.
-    fn start(&self, class: u32, t: f32, far_m: f32) -> Option<Ray> {
-        let mut best: Option<(f32, Ray)> = None;
+    fn start(&self, class: u32, t: f32, far_m: f32) -> Option<ShadowRay> {
+        let mut best: Option<(f32, ShadowRay)> = None;
         for &triangle in &self.around[class as usize] {
             let corners = self.shell.skin.triangles[triangle as usize];
             let Some(corner) = corners.iter().position(|&v| self.shell.skin.position_class[v as usize] == class) else {
                 continue;
             };
-            let place = Place { b: [f32::from(u8::from(corner == 1)), f32::from(u8::from(corner == 2))], t };
-            let jacobian = self.shell.prism(triangle).jacobian(&place);
+            let point = ShellPoint { b: [f32::from(u8::from(corner == 1)), f32::from(u8::from(corner == 2))], t };
+            let jacobian = self.shell.prism(triangle).jacobian(&point);
             let rates = jacobian.rates(self.to_light);
             let rates = [-rates.x - rates.y, rates.x, rates.y];
             let least = rates[(corner + 1) % 3].min(rates[(corner + 2) % 3]);
             // Of equals, the one that lies first in space.
             let order = |t: u32| self.shell.skin.order_in_space(t as usize);
-            let leads =
-                |&(most, ref ray): &(f32, Ray)| least > most || least == most && order(triangle) < order(ray.triangle);
+            let leads = |&(most, ref ray): &(f32, ShadowRay)| {
+                least > most || least == most && order(triangle) < order(ray.triangle)
+            };
             if best.as_ref().is_none_or(leads) {
-                best = Some((least, self.ray(triangle, place, far_m)));
+                best = Some((least, self.ray(triangle, point, far_m)));
             }
         }
         // Where no prism lies that way, the light comes over an open border.

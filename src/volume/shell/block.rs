@@ -50,7 +50,7 @@ impl<'a> Blocks<'a> {
         self.n.0[i] = (1_u32 << block.d) as f32;
     }
 
-    /// Values of the sub-elements that hold places; any value in lanes whose places lie in no prism.
+    /// Values of the sub-elements that hold points; any value in lanes whose points lie in no prism.
     #[inline(always)]
     pub fn at<I: Isa>(&self, b: Vec3s<I>, t: F32s<I>) -> F32s<I> {
         let layer = (t * self.layers).floor().within(0.0, self.layers - 1.0);

@@ -25,7 +25,7 @@ pub fn corners(d: u32) -> u32 {
 }
 
 /// Barycentric coordinates of a level's corners, in their order.
-pub fn places(d: u32) -> impl Iterator<Item = Vec3> {
+pub fn points(d: u32) -> impl Iterator<Item = Vec3> {
     let n = 1_u32 << d;
     let at = move |i: u32, j: u32| Vec3::new((n - i - j) as f32, i as f32, j as f32) / n as f32;
     (0..=n).flat_map(move |j| (0..=n - j).map(move |i| at(i, j)))
@@ -74,7 +74,7 @@ impl<'a> Lattices<'a> {
         self.n.0[i] = lattice.n as f32;
     }
 
-    /// Values at places, linear between the three corners and two levels around them; any value in lanes whose places lie in
+    /// Values at points, linear between the three corners and two levels around them; any value in lanes whose points lie in
     /// no prism.
     #[inline(always)]
     pub fn at<I: Isa>(&self, b: Vec3s<I>, level: F32s<I>) -> F32s<I> {

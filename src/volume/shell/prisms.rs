@@ -20,23 +20,23 @@ pub struct Vertex {
     pub length: f32,
 }
 
-/// Places in prisms: x = Σ bᵢ (pᵢ + t oᵢ).
+/// Points in prisms: x = Σ bᵢ (pᵢ + t oᵢ).
 #[derive(Clone, Copy, Debug)]
-pub struct Places<I: Isa> {
+pub struct ShellPoints<I: Isa> {
     /// Barycentric coordinates of corners 1 and 2; corner 0 has the rest.
     pub b: [F32s<I>; 2],
     /// Heights, 0 on the skin to 1 at the top.
     pub t: F32s<I>,
 }
 
-impl<I: Isa> Places<I> {
+impl<I: Isa> ShellPoints<I> {
     /// All three barycentric coordinates.
     #[inline(always)]
     pub fn barycentric(&self) -> Vec3s<I> {
         Vec3s::new(F32s::splat(1.0) - self.b[0] - self.b[1], self.b[0], self.b[1])
     }
 
-    /// The nearest places inside: a march that rounding or a folded prism has led astray must not read beyond the corners.
+    /// The nearest points inside: a march that rounding or a folded prism has led astray must not read beyond the corners.
     #[inline(always)]
     pub fn inside(&self) -> Self {
         let zero = F32s::splat(0.0);
@@ -71,10 +71,10 @@ pub struct Prisms {
     twice_area_m2: Row,
 }
 
-/// How places change with position.
+/// How points change with position.
 #[derive(Clone, Copy, Debug)]
 pub struct Jacobians<I: Isa> {
-    /// Positions of the places, m.
+    /// Positions of the points, m.
     pub at_m: Vec3s<I>,
     /// Skin to top, m.
     pub up_m: Vec3s<I>,
@@ -106,21 +106,21 @@ impl Prisms {
         }
     }
 
-    /// Positions, directions of the hair and gradients at places.
+    /// Positions, directions of the hair and gradients at points.
     #[inline(always)]
-    pub fn jacobians<I: Isa>(&self, places: &Places<I>) -> Jacobians<I> {
+    pub fn jacobians<I: Isa>(&self, points: &ShellPoints<I>) -> Jacobians<I> {
         let [a, b, c] = &self.corners;
-        let q = at(a, places.t);
-        let (e1, e2) = (at(b, places.t) - q, at(c, places.t) - q);
+        let q = at(a, points.t);
+        let (e1, e2) = (at(b, points.t) - q, at(c, points.t) - q);
         let offset_m = [Vec3s::of(&a.offset_m), Vec3s::of(&b.offset_m), Vec3s::of(&c.offset_m)];
-        let up_m = mix(offset_m, places.barycentric());
+        let up_m = mix(offset_m, points.barycentric());
         let cross = [e2.cross(up_m), up_m.cross(e1), e1.cross(e2)];
         let determinant = e1.dot(cross[0]);
         // A flat prism has no volume: rates of zero keep a march from leaving for infinity.
         let solid = determinant.abs().gt(F32s::splat(f32::MIN_POSITIVE));
         let inverse = solid.keep(F32s::splat(1.0) / determinant);
         Jacobians {
-            at_m: q + e1 * places.b[0] + e2 * places.b[1],
+            at_m: q + e1 * points.b[0] + e2 * points.b[1],
             up_m,
             determinant,
             gradients: [cross[0] * inverse, cross[1] * inverse, cross[2] * inverse],

@@ -4,12 +4,12 @@ use super::skeleton::{CHEST, EAR_LEFT, FRONT_LEFT, HEAD, HIND_LEFT, HIPS, JOINTS
 use crate::math::{Vec3, Vec4};
 use std::sync::LazyLock;
 
-/// Over what distance pieces melt into one another, m.
+/// Over what distance limbs melt into one another, m.
 const MELT_M: f32 = 0.009;
 
 /// A cone with round ends that moves with a joint.
 #[derive(Clone, Copy, Debug)]
-struct Piece {
+struct Limb {
     joint: usize,
     ends: [Vec3; 2],
     radii: [f32; 2],
@@ -17,7 +17,7 @@ struct Piece {
     flat: f32,
 }
 
-impl Piece {
+impl Limb {
     /// Distance to its surface, m; not quite Euclidean.
     fn distance(&self, point: Vec3) -> f32 {
         let axis = self.ends[1] - self.ends[0];
@@ -28,15 +28,15 @@ impl Piece {
     }
 }
 
-/// All pieces; what is given for the left side stands on both.
-static PIECES: LazyLock<Vec<Piece>> = LazyLock::new(|| {
-    let mut pieces = Vec::new();
+/// All limbs; what is given for the left side stands on both.
+static LIMBS: LazyLock<Vec<Limb>> = LazyLock::new(|| {
+    let mut limbs = Vec::new();
     let mut chain = |joint: usize, sides: bool, flat: f32, points: &[[f32; 4]]| {
         let mirror: &[f32] = if sides { &[1.0, -1.0] } else { &[1.0] };
         for (right, side) in mirror.iter().enumerate() {
             for pair in points.windows(2) {
                 let end = |p: [f32; 4]| Vec3::new(p[0] * side, p[1], p[2]);
-                pieces.push(Piece {
+                limbs.push(Limb {
                     joint: if right == 1 { JOINTS[joint].mirror } else { joint },
                     ends: [end(pair[0]), end(pair[1])],
                     radii: [pair[0][3], pair[1][3]],
@@ -85,15 +85,15 @@ static PIECES: LazyLock<Vec<Piece>> = LazyLock::new(|| {
         1.0,
         &[[0.0, 0.186, -0.325, 0.030], [0.0, 0.182, -0.400, 0.026], [0.0, 0.200, -0.455, 0.007]],
     );
-    pieces
+    limbs
 });
 
-/// Distance to the skin, m, negative inside: a smooth minimum over all pieces.
+/// Distance to the skin, m, negative inside: a smooth minimum over all limbs.
 pub fn distance(point: Vec3) -> f32 {
     let mut nearest = f32::INFINITY;
     let mut sum = 0.0;
-    for piece in PIECES.iter() {
-        let d = piece.distance(point);
+    for limb in LIMBS.iter() {
+        let d = limb.distance(point);
         // A running log-sum-exp; what is far beyond the nearest adds nothing.
         if d < nearest {
             sum = if nearest.is_finite() { sum * libm::expf((d - nearest) / MELT_M) } else { 0.0 } + 1.0;
@@ -108,8 +108,8 @@ pub fn distance(point: Vec3) -> f32 {
 /// The four joints that hold a point, and how much each does.
 pub fn weights(point: Vec3) -> ([u8; 4], Vec4) {
     let mut nearest = [f32::INFINITY; JOINTS.len()];
-    for piece in PIECES.iter() {
-        nearest[piece.joint] = nearest[piece.joint].min(piece.distance(point));
+    for limb in LIMBS.iter() {
+        nearest[limb.joint] = nearest[limb.joint].min(limb.distance(point));
     }
     let mut order: Vec<usize> = (0..JOINTS.len()).collect();
     order.sort_by(|&a, &b| nearest[a].total_cmp(&nearest[b]));

@@ -22,7 +22,7 @@ pub(super) struct Limits {
 
 /// How a triangle is to lie: rotations from its own axes to (u, v), as unit complex numbers.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
+pub(super) struct PatchFrame {
     /// The rotation that brings the comb to +u; without comb, the one that continues the neighbour's.
     pub combed: DVec2,
     /// How far the comb is to be believed, 0 … 1.
@@ -39,7 +39,7 @@ pub(super) struct Patch {
     /// Their vertices.
     pub corners: Vec<[u32; 3]>,
     /// How they are to lie.
-    pub frames: Vec<Frame>,
+    pub frames: Vec<PatchFrame>,
     /// Per vertex: flat position, m. Vertex 0 stays at the origin.
     pub uv: Vec<DVec2>,
     /// Per vertex: its place on the skin.
@@ -59,7 +59,7 @@ pub(super) struct Joining {
     /// Flat positions, m.
     pub uv: [DVec2; 3],
     /// How it is to lie.
-    pub frame: Frame,
+    pub frame: PatchFrame,
 }
 
 /// A comb shorter than this (its corners disagree) is not followed.
@@ -168,7 +168,7 @@ impl Patch {
         self.uv.push(uv);
     }
 
-    fn push_face(&mut self, t: usize, corners: [u32; 3], frame: Frame) {
+    fn push_face(&mut self, t: usize, corners: [u32; 3], frame: PatchFrame) {
         self.slots.insert(t as u32, self.faces.len() as u32);
         self.faces.push(t as u32);
         self.corners.push(corners);
@@ -210,14 +210,14 @@ impl Patch {
 }
 
 /// How triangle `t` is to lie beside a neighbour that unfolds to `unfolded` and deviates from its comb by `deviation`.
-fn frame(surface: &Surface, t: usize, unfolded: DVec2, deviation: DVec2) -> Frame {
+fn frame(surface: &Surface, t: usize, unfolded: DVec2, deviation: DVec2) -> PatchFrame {
     let comb = surface.comb[t];
     let trust = comb.length();
     if trust < FAINT {
-        return Frame { combed: unfolded, trust: 0.0, turn: unfolded };
+        return PatchFrame { combed: unfolded, trust: 0.0, turn: unfolded };
     }
     let combed = conjugate(comb / trust);
-    Frame { combed, trust, turn: combed.rotate(deviation) }
+    PatchFrame { combed, trust, turn: combed.rotate(deviation) }
 }
 
 /// Whether triangle `t` laid at `uv` (m) keeps within `limits`; triangles without area always do.

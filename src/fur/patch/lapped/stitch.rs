@@ -63,7 +63,7 @@ pub(super) fn stitch(surface: &Surface, tile_edge_m: f64, patches: &mut Patches)
     let bad = |patches: &Patches| (0..faces.len()).filter(|&t| !bent[t] && beyond(patches, t)).collect::<Vec<_>>();
     let turned_over =
         |patches: &Patches, t: usize| faces[t].jacobian(flat(patches, t)).is_some_and(|[x, y]| x.perp_dot(y) <= 0.0);
-    let skin = Skin { laplacian: Laplacian::new(faces, fade_m(faces, tile_edge_m), patches), before: &before };
+    let skin = StitchedSkin { laplacian: Laplacian::new(faces, fade_m(faces, tile_edge_m), patches), before: &before };
     // Where the skin itself keeps vertices apart in one place, the texture goes on and shall.
     let own = edges(topology, patches).filter(|edge| edge.ends[0] != edge.ends[1] && edge.joined(patches));
     let own: Vec<Weld> = own.map(|edge| Weld { edge, whole: IVec2::ZERO, off: 0.0 }).collect();
@@ -197,13 +197,13 @@ impl Groups {
 }
 
 /// What is moved.
-struct Skin<'a> {
+struct StitchedSkin<'a> {
     laplacian: Laplacian,
     /// Coordinates before anything was welded.
     before: &'a [Vec2],
 }
 
-impl Skin<'_> {
+impl StitchedSkin<'_> {
     /// Moves all vertices so that welds hold and the displacement is as smooth as can be, starting from where they are.
     fn spread<'w>(&self, welded: impl Iterator<Item = &'w Weld>, patches: &mut Patches) {
         let count = patches.uv.len();

@@ -9,14 +9,14 @@ use std::collections::{HashSet, VecDeque};
 
 /// A triangle of the skin in a chart's plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed {
+pub struct ChartTriangle {
     /// Triangle of the skin.
     pub triangle: usize,
     /// Its corners, in texels from the region's first.
     pub corners: [Vec2; 3],
 }
 
-impl Placed {
+impl ChartTriangle {
     fn holds(&self, p: Vec2) -> bool {
         let [a, b, c] = self.corners;
         let side = |a: Vec2, b: Vec2| (b - a).perp_dot(p - a);
@@ -31,18 +31,18 @@ impl Placed {
 /// A chart's region of the plane, with every triangle that has a place in it. No place belongs to two triangles: the
 /// earlier one has it.
 #[derive(Clone, Debug)]
-pub struct Region {
+pub struct ChartRegion {
     /// Texels along x and y.
     pub size: [usize; 2],
     /// The chart's own triangles, then those around it.
-    pub placed: Vec<Placed>,
+    pub placed: Vec<ChartTriangle>,
     /// How many of them are the chart's own.
     pub own: usize,
     /// Per texel: the triangles that may lie in it.
     cells: Vec<Vec<u32>>,
 }
 
-impl Region {
+impl ChartRegion {
     /// The region around `rectangle` (first column and row, columns and rows) of chart `chart`, `margin` texels wider on
     /// every side. `own` are the chart's triangles, `texels` those along the square's edge.
     pub fn new(
@@ -60,7 +60,7 @@ impl Region {
         let origin = Vec2::new(first[0] as f32, first[1] as f32);
         let corners = |t: usize| patches.triangles[t].map(|v| patches.uv[v as usize] * texels as f32 - origin);
         for &triangle in own {
-            region.push(Placed { triangle, corners: corners(triangle) });
+            region.push(ChartTriangle { triangle, corners: corners(triangle) });
         }
         region.own = own.len();
         // Across every edge that the chart does not go on over, the neighbour; from there on, its neighbours.
@@ -99,7 +99,7 @@ impl Region {
         inside.then(|| y as usize * self.size[0] + x as usize)
     }
 
-    fn bounds(&self, placed: &Placed) -> [[usize; 2]; 2] {
+    fn bounds(&self, placed: &ChartTriangle) -> [[usize; 2]; 2] {
         let [a, b, c] = placed.corners;
         let clamp = |p: Vec2| {
             let edge = |v: f32, size: usize| (v.floor().max(0.0) as usize).min(size);
@@ -108,12 +108,12 @@ impl Region {
         [clamp(a.min(b).min(c)), clamp(a.max(b).max(c) + 1.0)]
     }
 
-    fn touches(&self, placed: &Placed) -> bool {
+    fn touches(&self, placed: &ChartTriangle) -> bool {
         let [low, high] = self.bounds(placed);
         low[0] < high[0] && low[1] < high[1]
     }
 
-    fn push(&mut self, placed: Placed) {
+    fn push(&mut self, placed: ChartTriangle) {
         let index = self.placed.len() as u32;
         let [low, high] = self.bounds(&placed);
         for y in low[1]..high[1] {
@@ -127,7 +127,7 @@ impl Region {
 
 /// A triangle laid beside the edge from `from` to `to`, which is its edge `edge`, as it is on the skin, at the scale that
 /// the edge has. `None` where it has no area or the edge no length.
-fn unfolded(mesh: &Mesh, triangle: usize, edge: usize, from: Vec2, to: Vec2) -> Option<Placed> {
+fn unfolded(mesh: &Mesh, triangle: usize, edge: usize, from: Vec2, to: Vec2) -> Option<ChartTriangle> {
     let points_m = mesh.corners_m(triangle);
     let [a, b, c] = [0, 1, 2].map(|i| points_m[(edge + i) % 3]);
     let length_m = a.distance(b);
@@ -139,5 +139,5 @@ fn unfolded(mesh: &Mesh, triangle: usize, edge: usize, from: Vec2, to: Vec2) -> 
     let mut corners = [Vec2::ZERO; 3];
     (corners[edge], corners[(edge + 1) % 3], corners[(edge + 2) % 3]) = (from, to, apex);
     let area = (to - from).perp_dot(apex - from);
-    (area.is_finite() && area > 0.0).then_some(Placed { triangle, corners })
+    (area.is_finite() && area > 0.0).then_some(ChartTriangle { triangle, corners })
 }

@@ -1,5 +1,5 @@
 // Light in undercoat, as src/hybrid/undercoat_light.rs.
-#define_import_path furrier::undercoat_look
+#define_import_path furrier::undercoat_light
 
 #import furrier::scene::{scene, triangles, lights, tint_at, normal_at, density_at, length_at, table_at}
 #import furrier::prism::{barycentric, corners_of, around_corners}
@@ -15,7 +15,7 @@ fn shadow_byte(byte: u32) -> f32 {
     return decode_value((shadow[byte >> 2u] >> (8u * (byte & 3u))) & 255u);
 }
 
-// Optical depth towards the key light, linear between the three corners and two levels around a place;
+// Optical depth towards the key light, linear between the three corners and two levels around a point;
 // between levels as a flat coat's is.
 fn key_depth(triangle: u32, b: vec3<f32>, t: f32) -> f32 {
     let d = triangles[triangle].shadow_splits;
@@ -38,16 +38,16 @@ fn undercoat_ramp(t: f32) -> vec3<f32> {
     );
 }
 
-struct Look {
+struct Appearance {
     albedo: vec3<f32>,
     radiance: vec3<f32>,
 }
 
 // Colour of the hair at a step of a ray from `origin_m`, and the radiance it sends against `direction`.
-fn undercoat_look(taken: Step, origin_m: vec3<f32>, direction: vec3<f32>) -> Look {
+fn undercoat_light(taken: Step, origin_m: vec3<f32>, direction: vec3<f32>) -> Appearance {
     let middle_m = origin_m + direction * (taken.from_m + 0.5 * taken.length_m);
-    let b = barycentric(taken.place);
-    let t = taken.place.t;
+    let b = barycentric(taken.point);
+    let t = taken.point.t;
     let albedo = tint_at(taken.triangle, b) * undercoat_ramp(t);
     let power = shadow_power(albedo * scene.undercoat_albedo);
     let factor = density_at(taken.triangle, b) * length_at(taken.triangle, b);
@@ -71,5 +71,5 @@ fn undercoat_look(taken: Step, origin_m: vec3<f32>, direction: vec3<f32>) -> Loo
         radiance += light.irradiance * (albedo * scattered.x + scattered.y) * exp(-power * depth)
             * (cos_of(angles.sin_in) * open);
     }
-    return Look(albedo, radiance);
+    return Appearance(albedo, radiance);
 }

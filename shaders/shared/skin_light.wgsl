@@ -1,5 +1,5 @@
 // What bare or furred skin looks like, as src/hybrid/skin.rs.
-#define_import_path furrier::skin_look
+#define_import_path furrier::skin_light
 
 #import furrier::constants::PI
 #import furrier::scene::{scene, lights, position_at, normal_at, lean_at, tint_at, density_at, length_at}
@@ -14,7 +14,7 @@ struct SkinLook {
 }
 
 // Skin where a ray from the eye along `direction` meets a triangle: diffuse, under all of its hair.
-fn skin_look(triangle: u32, b: vec3<f32>, direction: vec3<f32>) -> SkinLook {
+fn skin_light(triangle: u32, b: vec3<f32>, direction: vec3<f32>) -> SkinLook {
     let outside = normal_at(triangle, b);
     let back = dot(direction, outside) > 0.0;
     let normal = select(outside, -outside, back);

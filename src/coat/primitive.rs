@@ -1,6 +1,6 @@
 //! A tile on a skin: the coat primitive.
 
-use super::fins::edges::{Surface, edges};
+use super::fins::edges::{FinSurface, edges};
 use crate::data::coat::{CoatPrimitive, Tile};
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
@@ -20,9 +20,9 @@ pub fn is_furred(fields: &Fields, triangle: [usize; 3]) -> bool {
     triangle.iter().any(|&v| fields.length[v] > SHORTEST && fields.density[v] > 0.0)
 }
 
-/// What a primitive wears, from its mesh, its fields and its patches. `local_offset` takes a skin vertex and a world
+/// What a primitive carries, from its mesh, its fields and its patches. `local_offset` takes a skin vertex and a world
 /// offset in metres to the base primitive's own space; `axes` has the tile's x axis for each (see [`axes`](super::axes::axes)).
-pub fn wear(
+pub fn coat_primitive(
     mesh: &Mesh,
     fields: &Fields,
     axes: &[Vec3],
@@ -36,7 +36,7 @@ pub fn wear(
     let position_class: Vec<u32> = patches.base_vertex.iter().map(|v| mesh.position_class[of(v)]).collect();
     let furred = |triangle: &&[u32; 3]| is_furred(fields, triangle.map(|v| of(&patches.base_vertex[v as usize])));
     let triangles: Vec<[u32; 3]> = patches.triangles.iter().filter(furred).copied().collect();
-    let surface = Surface { positions_m: &positions_m, position_class: &position_class, triangles: &triangles };
+    let surface = FinSurface { positions_m: &positions_m, position_class: &position_class, triangles: &triangles };
     let offset = |v: usize| offset_over_height(fields, v) * tile.height_m;
     CoatPrimitive {
         tile: 0,

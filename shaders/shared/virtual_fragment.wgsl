@@ -1,10 +1,10 @@
-// Stretches of rays through undercoat, the virtual fragments of Andersen et al. 2016 §3.3, as linked lists by pixel.
-#define_import_path furrier::stretch
+// Virtual fragments of rays through undercoat, the virtual fragments of Andersen et al. 2016 §3.3, as linked lists by pixel.
+#define_import_path furrier::virtual_fragment
 
 // In place of the index of one.
-const NO_STRETCH: u32 = 0xffffffffu;
+const NO_VIRTUAL_FRAGMENT: u32 = 0xffffffffu;
 
-struct Stretch {
+struct VirtualFragment {
     radiance: vec3<f32>,
     // Depths along the optical axis, m.
     from_m: f32,
