@@ -40,7 +40,7 @@ fn hair() -> TileHair {
 /// The tile of [`hair`], and what passes through its strands at each of [`ANGLES_DEG`], in the mean.
 pub fn tile_and_truth() -> (Tile, [f64; 4]) {
     let hair = hair();
-    let shells = ShellParameters { tile_mm: 8.0, texture_size: 32, layers: 8, ..ShellParameters::default() };
+    let shells = ShellParameters { tile_mm: 8.0, texture_size: 32, layers: 8 };
     let recipe = TileRecipe {
         preset: "test".into(),
         shells,
