@@ -5,9 +5,9 @@ use crate::data::light::Light;
 use crate::data::mesh::Mesh;
 use crate::math::Vec3;
 
-/// Distance of a key light from the middle of the skin's bounds, in diagonals of these, below which pictures are more than 0.05 of
-/// FLIP off, as the shadow of guard hair is followed along one direction.
-const NEAREST_DIAGONALS: f32 = 1.0;
+/// Distance of a key light from the middle of the skin's bounds, in diagonals of these, below which pictures of dense fur are more than
+/// 0.05 of FLIP off, as the shadow of guard hair is followed along one direction.
+const NEAREST_DIAGONALS: f32 = 2.0;
 
 impl Lighting {
     /// All lights, the key first.
