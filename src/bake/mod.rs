@@ -1,4 +1,4 @@
-//! Floor 7: the pipeline, from an asset to the same asset with a coat.
+//! Floor 8: the pipeline, from an asset to the same asset with a coat.
 
 mod atlas;
 mod comb;

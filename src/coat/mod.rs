@@ -1,4 +1,4 @@
-//! Floor 5: the product. Shells and fins are baked by asking [`crate::cast`] and judged by asking [`crate::runtime`].
+//! Floor 6: the product. Shells and fins are baked by asking [`crate::cast`] and judged by asking [`crate::runtime`].
 
 pub mod atlas;
 pub mod axes;

@@ -1,4 +1,4 @@
-//! Floor 8: error against time. A sweep draws one scene in many ways and says what each costs and how far off it is.
+//! Floor 9: error against time. A sweep draws one scene in many ways and says what each costs and how far off it is.
 
 pub mod plot;
 pub mod render;
