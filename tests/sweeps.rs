@@ -131,5 +131,5 @@ fn a_sweep_writes_its_four_files() {
     let report: serde_json::Value = serde_json::from_str(&read("out.json")).unwrap();
     assert_eq!(report["points"][1]["flip"], 0.0, "final against itself");
     [own, other].iter().for_each(|path| std::fs::remove_file(path).unwrap());
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 4);
 }
