@@ -133,5 +133,5 @@ pub fn studio(camera: &Camera) -> Lit {
     .map(|(at, irradiance)| {
         Directional { to_light: (right * at.x + up * at.y + back * at.z).normalize(), irradiance }.into()
     });
-    Lit { lights: lights.to_vec(), ambient: STUDIO_AMBIENT, fill_on_undercoat: false }
+    Lit { lights: lights.to_vec(), ambient: STUDIO_AMBIENT, fill_on_undercoat: true }
 }
