@@ -1,5 +1,6 @@
 //! A device opened for a window, on an X server of its own that shows nothing to anybody.
 
+use crate::common::skipped;
 use furrier::error::{Error, Kind};
 use furrier::gpu::{Choice, Gpu};
 use std::ffi::CString;
@@ -27,7 +28,7 @@ impl Server {
         let mut process = match command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn() {
             Ok(process) => process,
             Err(error) => {
-                eprintln!("left out: Xvfb, which windows need, does not start ({error})");
+                skipped(&format!("Xvfb, which windows need, does not start ({error})"));
                 return None;
             }
         };
