@@ -39,7 +39,7 @@ fn ramp(v: f32, drift: f32) -> f32 {
 
 // Whether a hair lies before the skin of a pixel's middle or, on the side that hair grows on, of its own point; seen from
 // its bare side, skin hides what lies behind either.
-fn before_skin(at: u32, point: vec2<f32>, z_m: f32) -> bool {
+fn before_skin(at: u32, own_px: vec2<f32>, z_m: f32) -> bool {
     let before_middle = z_m < skin_z(at);
     let named = atomicLoad(&skin_triangle[at]);
     if named == 0u {
@@ -51,12 +51,12 @@ fn before_skin(at: u32, point: vec2<f32>, z_m: f32) -> bool {
         camera_from_world(vertices[c.y].position_m),
         camera_from_world(vertices[c.z].position_m),
     );
-    let before_own = z_m < plane_depth(shape, vec3((point - view.centre_px) / view.focal_px, 1.0));
+    let before_own = z_m < plane_depth(shape, vec3((own_px - view.centre_px) / view.focal_px, 1.0));
     return select(before_middle && before_own, before_middle || before_own, faces_eye(shape));
 }
 
 // Point `i` of a strand in camera axes; where it lies behind the near plane, where its hair passes that.
-fn end_of_piece(point: u32, i: u32) -> vec3<f32> {
+fn end_of_segment(point: u32, i: u32) -> vec3<f32> {
     let p = camera_from_world(point_of(point));
     if p.z > view.near_m {
         return p;
@@ -99,8 +99,8 @@ fn guard(
     let strand = index / segments;
     let segment = index % segments;
     let point = strand * scene.points_per_strand + segment;
-    let start = end_of_piece(point, segment);
-    let end = end_of_piece(point + 1u, segment + 1u);
+    let start = end_of_segment(point, segment);
+    let end = end_of_segment(point + 1u, segment + 1u);
     if min(start.z, end.z) < view.near_m || max(start.z, end.z) <= view.near_m {
         return;
     }
@@ -153,7 +153,7 @@ fn guard(
             atomicMax(&totals[OVERFLOW], 1u);
             return;
         }
-        let point = mix(start_px, end_px, linear);
+        let own_px = mix(start_px, end_px, linear);
         var before = ramp(f32(begin) - (centre - half), drift) - ramp(f32(begin) - (centre + half), drift);
         for (var x = begin; x < past; x++) {
             let after = ramp(f32(x + 1) - (centre - half), drift) - ramp(f32(x + 1) - (centre + half), drift);
@@ -167,7 +167,7 @@ fn guard(
             if z_m > opaque_m[at] {
                 continue;
             }
-            let inside = clamp(point, vec2<f32>(pixel), vec2<f32>(pixel + 1));
+            let inside = clamp(own_px, vec2<f32>(pixel), vec2<f32>(pixel + 1));
             if before_skin(at, inside, z_m) {
                 put(at, z_m, point, min(coverage, 1.0), along);
             }

@@ -22,8 +22,8 @@ fn step_at(first: u32, i: u32) -> vec3<f32> {
 // beside an open border, where clumps are seen from their sides, with its clumps.
 fn depth_of(triangle: u32, b: vec3<f32>, height_m: f32, length: f32) -> f32 {
     let t = height_m / max(scene.undercoat_kind.top_m * length, 1e-30);
-    let point = triangles[triangle];
-    if (point.traits & AT_BORDER) != 0u && point.shadow_at != NOTHING && t <= 1.0 {
+    let root = triangles[triangle];
+    if (root.traits & AT_BORDER) != 0u && root.shadow_at != NOTHING && t <= 1.0 {
         return key_depth(triangle, b, max(t, 0.0));
     }
     let depths = mean_depths(triangle, b, height_m / max(tips_m() * length, 1e-30));

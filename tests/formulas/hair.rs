@@ -36,7 +36,7 @@ pub const MAIN: Source = Source {
 #import furrier::prism::{subelement, subelement_centre}
 #import furrier::guard::{opacity_at, guard_ramp, radius_factor, along_hair, root_of}
 #import furrier::undercoat::{mean_sine, code_value, decode_value}
-#import furrier::undercoat_look::undercoat_ramp
+#import furrier::undercoat_light::undercoat_ramp
 #import furrier::virtual_fragment::{pack_faces, unpack_albedo, unpack_tangent}
 
 @group(1) @binding(0) var<storage, read> inputs: array<vec4<f32>>;

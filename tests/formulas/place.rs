@@ -125,20 +125,18 @@ fn shaders_and_rust_agree_on_where_things_lie() {
     uniform.pattern_wavelength_m = volume.wavelength_m();
     (uniform.clump_spacing_m, uniform.clump_strength) = (volume.clump_spacing_m, volume.clump_strength);
 
-    // Tables by chance, then depths of columns, then the numbers of each triangle's columns.
+    // Tables by chance, then depths of columns.
     let triangles = scene.skin.triangles.len() as u32;
     let levels = mean::LAYERS as u32 + 1;
     let depths_at = TABLES * Table::VALUES;
-    let mut tables: Vec<f32> =
-        (0..depths_at as u32 + 3 * levels * COLUMNS * triangles).map(|_| stream.unit()).collect();
-    let numbers_at = tables.len() as u32;
-    tables.extend((0..COLUMNS * triangles).map(|column| column as f32));
+    let tables: Vec<f32> = (0..depths_at as u32 + 3 * levels * COLUMNS * triangles).map(|_| stream.unit()).collect();
+    let columns: Vec<u32> = (0..COLUMNS * triangles).collect();
     let items: Vec<TriangleItem> = (0..triangles)
         .map(|t| {
             let mut item: TriangleItem = bytemuck::Zeroable::zeroed();
             item.corners = scene.skin.triangles[t as usize];
             item.traits = if t % 2 == 0 { LINEAR } else { 0 };
-            (item.mean_at, item.mean_splits) = (numbers_at + COLUMNS * t, 1);
+            (item.mean_at, item.mean_splits) = (COLUMNS * t, 1);
             item
         })
         .collect();
@@ -154,11 +152,12 @@ fn shaders_and_rust_agree_on_where_things_lie() {
         list("lights", bytemuck::cast_slice(&scenes::studio().all().map(LightItem::from).collect::<Vec<_>>())),
         list("strands", bytemuck::cast_slice(&StrandItem::of(&grown.guard))),
         list("points", bytemuck::cast_slice(&points)),
+        list("columns", bytemuck::cast_slice(&columns)),
     ];
     let read = Binding::Read;
     let frame = gpu.buffer("view", &[ViewUniform::new(&view, [10, 40])], wgpu::BufferUsages::UNIFORM);
     let groups: [super::Group<'_>; 3] = [
-        (&[Binding::Uniform, read, read, read, read, read, read], buffers),
+        (&[Binding::Uniform, read, read, read, read, read, read, read], buffers),
         (&[], vec![]),
         (&[Binding::Uniform], vec![frame]),
     ];
