@@ -122,7 +122,7 @@ impl Case {
             1 => std::f32::consts::FRAC_PI_2 * (0.998 - 0.05 * u[1].w),
             _ => 1.4 * u[1].w,
         };
-        let length = if kind % 8 == 0 { 0.0 } else { 0.1 + u[2].x };
+        let length = if kind.is_multiple_of(8) { 0.0 } else { 0.1 + u[2].x };
         let up = (normal * lean_rad.cos() + around(u[2].y) * lean_rad.sin()) * length;
         let axis = match kind / 8 % 8 {
             0 => Vec3::ZERO,
@@ -167,14 +167,14 @@ pub fn law(shared: &[Source]) -> Vec<String> {
         let u = of(i)[6];
         let (turn, at) = (std::f32::consts::TAU * u.x, (u.y * 8.0).exp2() / (4.0 * size));
         // One pixel in four is round, which rounding must not take for two taps.
-        let flat = if i % 4 == 0 { 1.0 } else { 0.05 + u.z };
+        let flat = if i.is_multiple_of(4) { 1.0 } else { 0.05 + u.z };
         let major = Vec2::from_angle(turn) * at;
         [major, major.perp() * flat]
     };
     let level = |i: usize| of(i)[6].w * (mips - 1) as f32;
-    let slope = |i: usize| if i % 8 == 0 { Vec2::ZERO } else { (of(i)[7].truncate().truncate() - 0.5) * 0.4 };
+    let slope = |i: usize| if i.is_multiple_of(8) { Vec2::ZERO } else { (of(i)[7].truncate().truncate() - 0.5) * 0.4 };
     let cosine = |i: usize| LEAST_COSINE + (1.0 - LEAST_COSINE) * of(i)[7].z;
-    let opacity = |i: usize| if i % 8 == 0 { 1.0 } else { of(i)[7].w };
+    let opacity = |i: usize| if i.is_multiple_of(8) { 1.0 } else { of(i)[7].w };
     let mut inputs = Vec::new();
     for (i, case) in cases.iter().enumerate() {
         let [dx, dy] = pixel(i);

@@ -153,9 +153,9 @@ pub fn formulas(shared: &[Source]) -> Vec<String> {
             Light::Spot(Spot { point, direction: eye, inner_cos: b.z, outer_cos })
         };
         let arriving = lamp.at(Vec3::new(b.z, b.w, -b.z) * 0.3);
-        for k in 0..3 {
-            close("direction to a light", out[12][k], arriving.to_light[k]);
-            close("irradiance", out[13][k], arriving.irradiance[k]);
+        for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
+            close(&format!("direction to a light, {name}"), out[12].to_array()[k], arriving.to_light[k]);
+            close(&format!("irradiance, {name}"), out[13].to_array()[k], arriving.irradiance[k]);
         }
         let p = (a.truncate() - 0.5) * 40.0;
         close("noise", out[3].x, simplex(p, 0));

@@ -20,14 +20,14 @@ use furrier::volume::shell::prism::{Prism, ShellPoint};
 use furrier::volume::shell::{lattice, sides};
 
 /// Vectors per input.
-const OUTPUTS: usize = 20;
+const OUTPUTS: usize = 21;
 
 /// Evaluates everything at inputs of eight numbers in [0, 1).
 pub const MAIN: Source = Source {
     path: "formulas/place.wgsl",
     text: Text::Wgsl(
         "
-#import furrier::scene::{scene, triangles, prism_of, normal_at, lean_at, tint_at, density_at, length_at, clump_at, table_at,
+#import furrier::scene::{scene, triangles, prism_of, position_at, normal_at, lean_at, tint_at, density_at, length_at, clump_at, table_at,
     point_of, unit_or}
 #import furrier::prism::{ShellPoint, barycentric, moved, jacobian, rates_along, to_side_m, inside_of, around_corners, corner_point,
     corners_of}
@@ -59,7 +59,7 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let prism = prism_of(triangle);
     let j = jacobian(prism, place);
     let rates = rates_along(j, along);
-    let first = 20u * i;
+    let first = 21u * i;
     outputs[first] = vec4(j.at_m, j.determinant);
     outputs[first + 1u] = vec4(j.up_m, table_at(u32(c.z * 3.0), 1.2 * c.w - 0.1));
     outputs[first + 2u] = vec4(rates, tips_m());
@@ -92,6 +92,7 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let shape = flat_of(vec3(a.x, -a.y, 1.0 + a.z), vec3(-a.y, a.z, 1.0 + a.w), vec3(-a.w, -a.x, 1.0 + a.y));
     let ray = vec3(0.5 * (c.xy - 0.5), 1.0);
     let meeting = meet(shape, ray);
+    outputs[first + 20u] = vec4(position_at(triangle, b), 0.0);
     outputs[first + 19u] = vec4(select(-1.0, meeting.z_m, meeting.met), select(0.0, 1.0, faces_eye(shape)),
         plane_depth(shape, ray), meeting.barycentric.y);
 }
@@ -180,6 +181,8 @@ fn shaders_and_rust_agree_on_where_things_lie() {
             Prism { foot_m: corners.map(|v| scene.skin.positions_m[v]), offset_m: corners.map(|v| offsets_m[v]) };
         let j = prism.jacobian(&place);
         let rates = j.rates(along);
+        let on_skin_m = mix(&|v| scene.skin.positions_m[v]);
+        worst.note_all(i, "position on the skin", out[20].truncate() * 100.0, on_skin_m * 100.0);
         worst.note_all(i, "position", out[0].truncate() * 100.0, j.at_m * 100.0);
         worst.note(i, "determinant", out[0].w * 1e6, j.determinant * 1e6);
         worst.note_all(i, "way up", out[1].truncate() * 100.0, j.up_m * 100.0);
@@ -238,7 +241,7 @@ fn shaders_and_rust_agree_on_where_things_lie() {
             let first = depths_at + 3 * (columns(which) * levels as usize + level);
             Vec3::new(tables[first], tables[first + 1], tables[first + 2])
         };
-        let shadow = reference::mean_depths(of_level, b, 1.2 * c.w - 0.1, triangle % 2 == 0);
+        let shadow = reference::mean_depths(of_level, b, 1.2 * c.w - 0.1, triangle.is_multiple_of(2));
         worst.note(i, "mean shadow of undercoat", out[13].x, shadow[0]);
         worst.note(i, "mean shadow of other hair", out[13].y, shadow[1]);
         let beyond = sides::across(&place, corner, (c.w * 3.0) as usize);
