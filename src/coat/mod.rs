@@ -1,4 +1,5 @@
-//! Floor 6: the product. Shells and fins are baked by asking [`crate::cast`] and judged by asking [`crate::runtime`].
+//! Floor 6: the product. Shells and fins are baked by asking [`crate::cast`] and judged by the law that draws them
+//! ([`crate::data::shell`]).
 
 pub mod atlas;
 pub mod axes;

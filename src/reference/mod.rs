@@ -83,7 +83,7 @@ impl Settings {
 /// and skin, and undercoat, whose shadows are not kept.
 const LEAST: [f64; 2] = [2e-3, 0.01];
 
-/// Renders a picture: what [`crate::hybrid::picture::draw`] should have drawn.
+/// Renders a picture: what [`crate::hybrid::draw`] should have drawn.
 ///
 /// # Errors
 /// Names what keeps the camera from looking anywhere, or a scattering parameter out of range.
