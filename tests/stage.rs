@@ -186,7 +186,7 @@ fn differ_is_told(mask: &[bool]) -> bool {
 
 #[test]
 fn cameras_and_lights_of_the_asset_go_by_name() {
-    let subject = Asset::new(egg(), vec![]).unwrap().subject(0.5).unwrap();
+    let subject = Asset::new(egg(), vec![]).unwrap().subject(0.5, |_, _| 0.0).unwrap();
     let camera = subject.cameras[0].value.clone().unwrap();
     assert_eq!(subject.cameras[0].names, ["behind"]);
     assert!(DVec3::from(camera.eye).distance(DVec3::new(0.15, 0.1, -0.5)) < 1e-6, "{camera:?}");

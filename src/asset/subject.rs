@@ -12,23 +12,24 @@ use crate::math::{DMat4, DVec3, Vec3};
 const LIGHTS: &str = "KHR_lights_punctual";
 
 impl Asset {
-    /// The asset in the rest pose, as camera and lights need to know it; a file unit is `metres_per_unit` long. What its hair
-    /// reaches is not known here.
+    /// The asset in the rest pose, as camera and lights need to know it; a file unit is `metres_per_unit` long, and
+    /// `hair_m` says how far hair reaches from a part's vertex, m.
     ///
     /// # Errors
     /// Names morph weights or nodes that cannot be read. Cameras and lights that cannot be used fail when they are asked for.
-    pub fn subject(&self, metres_per_unit: f64) -> Result<Subject> {
+    pub fn subject(&self, metres_per_unit: f64, hair_m: impl Fn(usize, usize) -> f32) -> Result<Subject> {
         let pose = self.rest_pose()?;
         let centre_units = self.parts.first().map_or(DVec3::ZERO, |part| part.centre_units);
         let mut subject = Subject { origin_m: centre_units * metres_per_unit, ..Subject::default() };
-        for part in &self.parts {
+        for (index, part) in self.parts.iter().enumerate() {
             let mut used = vec![false; part.vertices()];
             part.stored.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
             for &node in &part.nodes {
                 let points = part.posed(self, &pose, node, metres_per_unit).positions_m;
-                subject
-                    .points_m
-                    .extend(points.iter().zip(&used).filter(|(p, used)| **used && p.is_finite()).map(|(p, _)| p));
+                for (v, &p) in points.iter().enumerate().filter(|(v, p)| used[*v] && p.is_finite()) {
+                    subject.points_m.push(p);
+                    subject.hair_m.push(hair_m(index, v));
+                }
             }
         }
         let root = self.document.root();

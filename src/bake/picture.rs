@@ -89,7 +89,7 @@ impl Grown {
         let fibre = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
         let undercoat = Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m);
         let tile = TileHair::grow(&fibre, &undercoat, preset.shells.tile_mm * 1e-3, request.seed);
-        let mut subject = asset.subject(scale.metres_per_unit)?;
+        let mut hair_m = Vec::with_capacity(asset.parts.len());
         let mut all: Option<Groomed> = None;
         for (index, part) in asset.parts.iter().enumerate() {
             let mut groomed = skin::groom(&asset, part, preset, &scale)?;
@@ -100,7 +100,7 @@ impl Grown {
                 let own = skin::bare_colour(&asset, part, &groomed.mesh)?;
                 groomed.fields.tint = own.into_iter().map(|colour| colour / factor).collect();
             }
-            subject.hair_m = subject.hair_m.max(f64::from(reach_m(&groomed, tile.height_m)));
+            hair_m.push(reaches_m(&groomed, tile.height_m));
             if let Some(pose) = &pose {
                 groomed = groomed.pose(&asset, part, pose, scale.metres_per_unit)?;
             }
@@ -119,7 +119,7 @@ impl Grown {
             only: request.only,
             metres_per_unit: scale.metres_per_unit,
             groomed,
-            subject,
+            subject: asset.subject(scale.metres_per_unit, |part, v| hair_m[part][v])?,
             notes,
         })
     }
@@ -171,12 +171,13 @@ impl Grown {
     }
 }
 
-/// How far the hair of a part reaches from its skin, m, where it carries a tile `height_m` high: as a bake of it has it.
-fn reach_m(groomed: &Groomed, height_m: f32) -> f32 {
+/// How far hair reaches from each vertex, m, as a bake would store it: 0 where none grows.
+fn reaches_m(groomed: &Groomed, height_m: f32) -> Vec<f32> {
     let Groomed { mesh, fields, .. } = groomed;
-    let length = |v: usize| offset_over_height(fields, v).length();
+    let mut reaches_m = vec![0.0; mesh.positions_m.len()];
     let furred = mesh.triangles.iter().map(|t| t.map(|v| v as usize)).filter(|t| is_furred(fields, *t));
-    furred.flatten().map(length).fold(0.0, f32::max) * height_m
+    furred.flatten().for_each(|v| reaches_m[v] = offset_over_height(fields, v).length() * height_m);
+    reaches_m
 }
 
 /// Adds a part's skin and fields to those before it.

@@ -12,8 +12,8 @@ pub struct Subject {
     pub origin_m: DVec3,
     /// Points of the skin in the rest pose, m, relative to `origin_m`.
     pub points_m: Vec<Vec3>,
-    /// How far hair reaches from the skin at most, m.
-    pub hair_m: f64,
+    /// How far hair reaches from the skin at each of these points, m.
+    pub hair_m: Vec<f32>,
     /// The asset's own cameras, in world coordinates; an error says why one of them takes no picture.
     pub cameras: Vec<Named<Camera>>,
     /// The asset's own lights.

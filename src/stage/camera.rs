@@ -81,7 +81,7 @@ impl Viewpoint {
 }
 
 impl Orbit {
-    /// The camera that holds the subject's points in the rest pose, each with a ball of hair around it. It does not hang on
+    /// The camera that holds the subject's points in the rest pose, each with a ball of its own hair around it. It does not hang on
     /// the hair as drawn, so that every renderer of an asset has the same.
     pub fn camera(&self, subject: &Subject, aspect: f64) -> Camera {
         let (azimuth, elevation) = (self.azimuth_deg.to_radians(), self.elevation_deg.to_radians());
@@ -97,18 +97,19 @@ impl Orbit {
         let slope_y = (0.5 * VFOV_DEG.to_radians()).tan() * (1.0 - MARGIN);
         let slopes = DVec2::new(slope_y * aspect, slope_y);
         // A plane of the frustum leaves room for a ball of radius r where it clears its middle by r, measured at a right angle.
-        let room = (slopes * slopes + 1.0).map(f64::sqrt) * subject.hair_m;
+        let room = (slopes * slopes + 1.0).map(f64::sqrt);
+        let rooms: Vec<DVec2> = subject.hair_m.iter().map(|&hair_m| room * f64::from(hair_m)).collect();
         let (mut middle, mut distance) = (DVec3::ZERO, 1.0);
         if let Some(&first) = seen.first() {
             let (low, high) = seen.iter().fold((first, first), |(low, high), &p| (low.min(p), high.max(p)));
             middle = 0.5 * (low + high);
             // Perspective moves the outline's middle off that of the box; a few steps settle it.
             for _ in 0..8 {
-                let needed = |p: &DVec3| {
+                let needed = |(p, room): (&DVec3, &DVec2)| {
                     let d = *p - middle;
-                    d.z + ((d.truncate().abs() + room) / slopes).max_element()
+                    d.z + ((d.truncate().abs() + *room) / slopes).max_element()
                 };
-                distance = seen.iter().map(needed).fold(0.0, f64::max).max(1e-6);
+                distance = seen.iter().zip(&rooms).map(needed).fold(0.0, f64::max).max(1e-6);
                 let project = |p: &DVec3| (*p - middle).truncate() / (distance - (p.z - middle.z)).max(1e-9);
                 let start = project(&seen[0]);
                 let (low, high) =
