@@ -1,4 +1,4 @@
-// Counts to points in a list: every pixel gets a span of its own. Which one does not matter, so groups of pixels take theirs
+// Counts to positions in a list: every pixel gets a span of its own. Which one does not matter, so groups of pixels take theirs
 // as they come.
 #import furrier::constants::{FRAGMENTS, OVERFLOW, STARTS}
 #import furrier::camera::{view, totals, spans, cursors, pixel_count, Span}

@@ -37,7 +37,7 @@ fn ramp(v: f32, drift: f32) -> f32 {
     return 0.5 * (v + half) * (v + half) / drift;
 }
 
-// Whether a hair lies before the skin of a pixel's middle or, on the side that hair grows on, of its own point; seen from
+// Whether a hair lies before the skin of a pixel's middle or, on the side that hair grows on, at its own place in the pixel; seen from
 // its bare side, skin hides what lies behind either.
 fn before_skin(at: u32, own_px: vec2<f32>, z_m: f32) -> bool {
     let before_middle = z_m < skin_z(at);

@@ -26,7 +26,7 @@ fn order(
     let at = fragment_pixel[slot];
     let begin = spans[at].begin;
     let end = min(atomicLoad(&cursors[at]), spans[at].end);
-    // A point that was counted and not filled.
+    // A slot that was counted and not filled.
     if slot < begin || slot >= end {
         return;
     }

@@ -43,7 +43,7 @@ struct Span {
 // First virtual fragment of undercoat.
 @group(2) @binding(5) var<storage, read_write> heads: array<u32>;
 @group(2) @binding(6) var<storage, read_write> spans: array<Span>;
-// While items are counted their number; while they are filled in the next one's point.
+// While items are counted their number; while they are filled in the next one's position.
 @group(2) @binding(7) var<storage, read_write> cursors: array<atomic<u32>>;
 
 fn camera_from_world(point_m: vec3<f32>) -> vec3<f32> {

@@ -41,7 +41,7 @@ pub const STRANDS: Source = source!("hybrid/strands.wgsl");
 pub const SKIN: Source = source!("hybrid/skin.wgsl");
 /// Finds where rays enter the shell.
 pub const ENTRANCES: Source = source!("hybrid/entrances.wgsl");
-/// Turns counts into points in lists.
+/// Turns counts into positions in lists.
 pub const ALLOT: Source = source!("hybrid/allot.wgsl");
 /// Follows rays through undercoat.
 pub const MARCH: Source = source!("hybrid/march.wgsl");
@@ -111,7 +111,7 @@ pub(super) struct Kernels {
     pub skin: [Kernel; 2],
     /// First counts, then lists.
     pub entrances: [Kernel; 2],
-    /// First points for starts, then for fragments.
+    /// First positions of starts, then of fragments.
     pub allot: [Kernel; 2],
     pub march: Kernel,
     /// First counts, then lists.

@@ -48,12 +48,12 @@ struct Stored {
 }
 
 impl Stored {
-    /// Those of `order` that fit into `most_columns`; `columns_of` gives their columns. Writes where each begins to `point`.
+    /// Those of `order` that fit into `most_columns`; `columns_of` gives their columns. Tells `begins` where each begins.
     fn new(
         order: impl Iterator<Item = u32>,
         most_columns: usize,
         columns_of: impl Fn(u32) -> u32,
-        mut point: impl FnMut(u32, u32),
+        mut begins: impl FnMut(u32, u32),
     ) -> Self {
         let mut stored = Self { starts: Vec::new(), columns: 0 };
         for triangle in order {
@@ -61,7 +61,7 @@ impl Stored {
             if stored.columns + columns > most_columns {
                 continue;
             }
-            point(triangle, stored.columns as u32);
+            begins(triangle, stored.columns as u32);
             stored.starts.push([stored.columns as u32, triangle]);
             stored.columns += columns;
         }

@@ -244,7 +244,7 @@ fn advance<'v, I: Isa, T: MarchVisitor<I>>(
 
     let from = From { j, points, rates, at_m, direction };
     let mut shortened = false;
-    // Asked for at one point, so that its code is there once.
+    // Called from one line, so that its code is there once.
     let steps = loop {
         let steps = volume.steps(&flight.prisms, &flight.blocks, &from, length_m);
         let too_deep = walking & steps.depth.gt(depth * 2.0) & length_m.gt(least_m);
