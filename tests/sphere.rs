@@ -16,7 +16,7 @@ use furrier::preset::Preset;
 use furrier::runtime::Show;
 use furrier::stage::camera::Viewpoint;
 use furrier::stage::options;
-use furrier::viewer::{Subject, ViewOptions, screenshot};
+use furrier::viewer::{Shown, ViewOptions, screenshot};
 
 const RADIUS_M: f32 = 0.1;
 const PIXELS: usize = 160;
@@ -81,7 +81,7 @@ fn drawn(preset: &Preset, show: Show, width_m: f32) -> f32 {
     let (asset, coat) = read_coat(&out).unwrap();
     let viewpoint = Viewpoint::Camera(camera());
     let stage = options::Options { size: [PIXELS as u32; 2], viewpoint, ..options::Options::default() };
-    let options = ViewOptions { stage, show: Subject::Coat(show), ..ViewOptions::default() };
+    let options = ViewOptions { stage, show: Shown::Coat(show), ..ViewOptions::default() };
     let shot = screenshot(&asset, &coat, &options).unwrap();
     ring(&shot.picture.pixels.iter().map(|p| p[3]).collect::<Vec<_>>(), width_m)
 }

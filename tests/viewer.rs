@@ -8,7 +8,7 @@ use furrier::math::{Vec2, Vec3, Vec4};
 use furrier::runtime::{Picture, Show};
 use furrier::stage::camera::{Orbit, Viewpoint};
 use furrier::stage::options;
-use furrier::viewer::{self, Chart, Subject, ViewOptions, parse_show, stage};
+use furrier::viewer::{self, Chart, Shown, ViewOptions, parse_show, stage};
 
 /// `tile` carried on every part of `asset` that is not bare, hair along the normals, no fins.
 fn dressed(asset: &Asset, tile: Tile) -> Coat {
@@ -90,7 +90,7 @@ fn shells_move_with_the_skin() {
     let camera = Camera { eye: at(eye), target: at(middle), up: [0.0, 1.0, 0.0], vfov_deg: 40.0 };
     let shot = |seconds: Option<f64>, show: Show| {
         let moment = seconds.map(|s| (animation.clone(), s));
-        let options = ViewOptions { show: Subject::Coat(show), moment, ..staged([96, 72], Viewpoint::Camera(camera)) };
+        let options = ViewOptions { show: Shown::Coat(show), moment, ..staged([96, 72], Viewpoint::Camera(camera)) };
         viewer::screenshot(&asset, &coat, &options).unwrap().picture
     };
     let difference =
@@ -158,8 +158,8 @@ fn a_report_says_what_was_drawn() {
 
 #[test]
 fn flags_are_read_or_refused() {
-    assert_eq!(parse_show("skin, fins").unwrap(), Subject::Coat(Show { skin: true, shells: false, fins: true }));
-    assert_eq!(parse_show("stretch").unwrap(), Subject::Chart(Chart::Stretch));
+    assert_eq!(parse_show("skin, fins").unwrap(), Shown::Coat(Show { skin: true, shells: false, fins: true }));
+    assert_eq!(parse_show("stretch").unwrap(), Shown::Chart(Chart::Stretch));
     assert!(parse_show("skin,field").unwrap_err().expected.unwrap().contains("field alone"));
     assert!(parse_show("skin,hair").unwrap_err().found.unwrap().contains("hair"));
     assert!(Camera::from_json(r#"{"eye": [0,0,1], "target": [0,0,0]}"#).is_ok());
@@ -175,7 +175,7 @@ fn flags_are_read_or_refused() {
 
 /// Share of the seen pixels that `wanted` finds in a chart of the creature.
 fn charted(coat: &Coat, asset: &Asset, chart: Chart, wanted: impl Fn(Vec3) -> bool) -> (f64, Vec<String>) {
-    let options = ViewOptions { show: Subject::Chart(chart), ..staged([320, 240], Viewpoint::default()) };
+    let options = ViewOptions { show: Shown::Chart(chart), ..staged([320, 240], Viewpoint::default()) };
     let shot = viewer::screenshot(asset, coat, &options).unwrap();
     let seen: Vec<Vec3> =
         shot.picture.pixels.iter().filter(|p| p[3] > 0.99).map(|p| Vec3::new(p[0], p[1], p[2])).collect();

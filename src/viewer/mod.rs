@@ -30,7 +30,7 @@ pub struct ViewOptions {
     /// Camera, light and development.
     pub stage: options::Options,
     /// What to draw.
-    pub show: Subject,
+    pub show: Shown,
     /// Animation by name or number, and seconds into it; `None` is the rest pose.
     pub moment: Option<(String, f64)>,
     /// Shading samples along a pixel's edge, 1 to 8. Edges are sampled four times as often in any case.
@@ -42,7 +42,7 @@ impl Default for ViewOptions {
         Self {
             device: Choice::Auto,
             stage: options::Options::default(),
-            show: Subject::default(),
+            show: Shown::default(),
             moment: None,
             samples: 1,
         }
@@ -51,14 +51,14 @@ impl Default for ViewOptions {
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Subject {
+pub enum Shown {
     /// The coat as a game draws it.
     Coat(Show),
     /// How it lies.
     Chart(Chart),
 }
 
-impl Default for Subject {
+impl Default for Shown {
     fn default() -> Self {
         Self::Coat(Show::default())
     }
@@ -94,7 +94,7 @@ impl Shot {
 ///
 /// # Errors
 /// Names the word that is none of them, or a chart that is not alone.
-pub fn parse_show(text: &str) -> Result<Subject> {
+pub fn parse_show(text: &str) -> Result<Shown> {
     let chart = |word: &str| match word {
         "field" => Some(Chart::Field),
         "patches" => Some(Chart::Patches),
@@ -102,7 +102,7 @@ pub fn parse_show(text: &str) -> Result<Subject> {
         _ => None,
     };
     if let Some(chart) = chart(text.trim()) {
-        return Ok(Subject::Chart(chart));
+        return Ok(Shown::Chart(chart));
     }
     let mut show = Show { skin: false, shells: false, fins: false };
     for word in text.split(',').map(str::trim) {
@@ -124,7 +124,7 @@ pub fn parse_show(text: &str) -> Result<Subject> {
             }
         }
     }
-    Ok(Subject::Coat(show))
+    Ok(Shown::Coat(show))
 }
 
 /// One picture of `asset` wearing `coat`.
@@ -200,11 +200,11 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
         Ok((scene, Show { skin: true, shells: false, fins: false }, legend))
     };
     let staged = || match options.show {
-        Subject::Coat(show) => Ok((stage::scene(asset, coat, &textures, &pose), show, Vec::new())),
-        Subject::Chart(chart) => drawing(chart),
+        Shown::Coat(show) => Ok((stage::scene(asset, coat, &textures, &pose), show, Vec::new())),
+        Shown::Chart(chart) => drawing(chart),
     };
     let (scene, show, legend) = recorder.step("pose", staged, |_| 0)?;
-    let charted = matches!(options.show, Subject::Chart(_));
+    let charted = matches!(options.show, Shown::Chart(_));
     let subject = subject(asset, coat)?;
     let origin_m = subject.origin_m;
     let points_m = stage::points_m(&scene);
