@@ -95,7 +95,7 @@ fn meets(hairs: &Cylinders, through: DVec3, direction: DVec3) -> bool {
     enter <= leave
 }
 
-/// A level scene large enough that no ray leaves it sideways.
+/// A level skin large enough that no ray leaves it sideways.
 pub fn level(edge_m: f32) -> Mesh {
     scenes::grid(8, 8, |u, v| Vec3::new(u - 0.5, v - 0.5, 0.0) * edge_m)
 }

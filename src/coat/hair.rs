@@ -49,7 +49,7 @@ impl TileHair {
         }
     }
 
-    /// As a scene that repeats.
+    /// As what rays meet, repeating.
     pub fn scene(&self) -> Geometry<'_> {
         Geometry {
             guard: Some(&self.guard),

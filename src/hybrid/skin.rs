@@ -73,7 +73,7 @@ pub fn shade(prepared: &Prepared<'_>, t: u32, barycentric: Vec3, direction: Vec3
     let albedo = mix3(&scene.fields.tint) * scene.skin_factor;
     let (density, length) = (mix1(&scene.fields.density), mix1(&scene.fields.length));
     let kinds = [scene.guard.map(|(_, fibre)| fibre), scene.undercoat];
-    // The back of a scene is bare.
+    // The back of the skin is bare.
     let above: f32 =
         if back { 0.0 } else { kinds.iter().flatten().map(|f| Layer::new(f, density, length).above(0.0)).sum() };
     let mut radiance = lighting.ambient * albedo * exp_negative(-sky_depth(above));

@@ -180,7 +180,7 @@ impl<'a> GuardCones<'a> {
         let ([from_m, to_m], radius_m) = self.ends(strand, segment);
         let (from, to) = (from_m - ray.origin_m, to_m - ray.origin_m);
         let [enter_m, leave_m, along] = cone::enter_and_leave(from, to, radius_m, ray.direction)?;
-        // The root's round end lies under the skin: none is seen through the bare side of a scene.
+        // The root's round end lies under the skin: none is seen through the bare side of the skin.
         if enter_m < 0.0 || segment == 0 && (ray.direction * enter_m - from).dot(self.up(strand)) < 0.0 {
             return None;
         }

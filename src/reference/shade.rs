@@ -144,7 +144,7 @@ impl<'a> Shader<'a> {
         let lean = self.lean(point);
         let albedo = self.vector(&self.scene.fields.tint, point) * self.scene.skin_factor.as_dvec3();
         let at_m = self.vector(&self.scene.skin.positions_m, point);
-        // The back of a scene is bare.
+        // The back of the skin is bare.
         let site = if back {
             Site { at_m, normal, lean, above: 0.0, key_depth: 0.0 }
         } else {

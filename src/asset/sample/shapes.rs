@@ -10,7 +10,7 @@ fn turn(fraction: f32) -> Vec2 {
     Vec2::new(libm::cosf(TAU * fraction), libm::sinf(TAU * fraction))
 }
 
-/// A scene of 190 cm² bent over a half cylinder of 4.2 cm radius: 56 × 32 quads, 3,584 triangles.
+/// A skin of 190 cm² bent over a half cylinder of 4.2 cm radius: 56 × 32 quads, 3,584 triangles.
 pub fn cylinder() -> Shape {
     let radius = 0.042;
     let length = 0.019 / (PI * radius);
