@@ -9,7 +9,8 @@ use crate::data::mesh::Mesh;
 use crate::error::{Error, Result};
 use crate::math::{DAffine3, DMat3, DMat4, DVec3, Vec3};
 
-/// A triangle primitive of the default scene. Mesh vertices are the stored vertices, in their order.
+/// A triangle primitive of the default scene. Mesh vertices are the stored vertices, in their order: those that its triangles
+/// use.
 #[derive(Clone, Debug)]
 pub struct Part {
     /// glTF mesh.
@@ -18,12 +19,14 @@ pub struct Part {
     pub primitive: usize,
     /// Nodes that show the mesh; the rest pose is the first one's.
     pub nodes: Vec<usize>,
-    /// Skin of the first node.
-    pub skin: Option<usize>,
+    /// The skin of each of these nodes, where it has one.
+    pub skins: Vec<Option<usize>>,
     /// Name of its material; `material_3` for nameless ones, `default` where there is none.
     pub material_name: String,
     /// What hair takes its colour from by default.
     pub base_colour: BaseColour,
+    /// Whether its material shows both sides.
+    pub double_sided: bool,
     /// Vertex data in the primitive's own space.
     pub stored: Primitive,
     /// Middle of the whole scene, file units: the origin of every part's mesh.
@@ -44,7 +47,7 @@ impl Part {
 
     /// Per vertex, or once for all: the affine map from the primitive's space to the world.
     fn placement(&self, scene: &SceneGraph, world: &[DMat4], node: usize, stored: &Primitive) -> Result<Vec<DAffine3>> {
-        let (Some(skin), Some(influences)) = (self.skin, &stored.influences) else {
+        let (Some(skin), Some(influences)) = (self.skin_under(node), &stored.influences) else {
             scene.check_invertible(node, &world[node])?;
             return Ok(vec![DAffine3::from_mat4(world[node])]);
         };
@@ -69,6 +72,11 @@ impl Part {
             maps.push(DAffine3::from_mat4(blend));
         }
         Ok(maps)
+    }
+
+    /// The skin under which `node`, one of [`Self::nodes`], shows the mesh.
+    pub fn skin_under(&self, node: usize) -> Option<usize> {
+        self.nodes.iter().zip(&self.skins).find(|(of, _)| **of == node).and_then(|(_, skin)| *skin)
     }
 
     fn map(&self, vertex: usize) -> &DAffine3 {
@@ -111,7 +119,9 @@ impl Part {
                 .collect(),
             rest_m: None,
             normals: vertices.map(|v| world_normal(&self.map(v).matrix3, stored.normals[v])).collect(),
+            hair_normals: None,
             triangles,
+            face_seeds: Vec::new(),
             position_class: stored.position_class.clone(),
             uv_sets: stored.uv_sets.clone(),
             colour: stored.colour.clone(),
@@ -178,17 +188,17 @@ pub fn collect(document: &Document, scene: &SceneGraph, notes: &mut Notes) -> Re
                 }
                 _ => return Err(at.need("mode")?.fault("0 to 6")),
             }
-            let skin = nodes[nodes_of[0]].reference("skin", "skins", scene.skins.len())?;
-            let stored = Primitive::read(document, at, skin.map(|s| scene.skins[s].joints.len()), notes)?;
+            let skin_of = |&node: &usize| nodes[node].reference("skin", "skins", scene.skins.len());
+            let skins: Vec<Option<usize>> = nodes_of.iter().map(skin_of).collect::<Result<_>>()?;
+            let joints = skins.iter().flatten().map(|&skin| scene.skins[skin].joints.len()).min();
+            let stored = Primitive::read(document, at, joints, notes)?;
             if stored.triangles.is_empty() {
                 notes.warn(format!("{}: no triangles; passed over", at.path));
                 continue;
             }
             vertices += stored.positions.len();
-            if vertices > MAX_VERTICES {
-                return Err(at
-                    .fault(&format!("at most {MAX_VERTICES} vertices in all"))
-                    .with_hint("decimate the mesh"));
+            if u32::try_from(vertices).is_err() {
+                return Err(at.fault(&format!("at most {} vertices in all", u32::MAX)).with_hint("decimate the mesh"));
             }
             let material = at.reference("material", "materials", document.count("materials"))?;
             parts.push(
@@ -196,8 +206,9 @@ pub fn collect(document: &Document, scene: &SceneGraph, notes: &mut Notes) -> Re
                     mesh,
                     primitive,
                     nodes: nodes_of.clone(),
-                    skin,
+                    skins,
                     material_name: material_name(document, material)?,
+                    double_sided: material.map_or(Ok(false), |m| double_sided(document, m))?,
                     base_colour: material.map_or(Ok(BaseColour::default()), |m| BaseColour::of(document, m, notes))?,
                     stored,
                     centre_units: DVec3::ZERO,
@@ -227,8 +238,10 @@ pub fn collect(document: &Document, scene: &SceneGraph, notes: &mut Notes) -> Re
     Ok((parts, (high - low).length()))
 }
 
-/// Most vertices of all parts together.
-const MAX_VERTICES: usize = 1 << 24;
+fn double_sided(document: &Document, material: usize) -> Result<bool> {
+    let at = document.root().entry("materials", material)?;
+    Ok(at.get("doubleSided").is_some_and(|sided| sided.value.as_bool() == Some(true)))
+}
 
 fn material_name(document: &Document, material: Option<usize>) -> Result<String> {
     let Some(index) = material else { return Ok("default".into()) };

@@ -110,7 +110,7 @@ impl Part {
     pub fn posed(&self, asset: &Asset, pose: &Pose, node: usize, metres_per_unit: f64) -> Posed {
         let stored = &self.stored;
         let weights = pose.weights.get(node).map_or(&[][..], Vec::as_slice);
-        let skinned = self.skin.zip(stored.influences.as_ref());
+        let skinned = self.skin_under(node).zip(stored.influences.as_ref());
         let joints = skinned.map(|(skin, _)| asset.scene.joint_matrices(skin, &pose.world));
         let mut posed =
             Posed { positions_m: Vec::new(), normals: Vec::new(), world_from_offset: Vec::new(), mirrored: false };

@@ -47,6 +47,7 @@ impl Primitive {
             }
             primitive.morphs.push(morph);
         }
+        primitive.compact();
         Ok(primitive)
     }
 

@@ -1,6 +1,6 @@
 //! An atlas: hair grown on the parts themselves, charts of all of them in one square.
 
-use super::{CoatedParts, Laid, Steps, Task, recipe, skin};
+use super::{CoatedParts, Laid, Steps, Task, recipe};
 use crate::coat::atlas::{self, judge};
 use crate::coat::measures::Measures;
 use crate::error::{Error, Result};
@@ -27,53 +27,33 @@ pub(super) fn coat_parts(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps
     let (fibres, recipe) = (task.fibres(task.preset), recipe(task.preset));
     let texels = texels.unwrap_or_else(|| (TEXELS.0 * recipe.shells.texture_size).min(TEXELS.1));
     let tile_m = recipe.shells.tile_mm * 1e-3;
-    let (mut groomed, mut patches, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
-    let mut times_ms = Vec::new();
-    for &part in task.parts {
-        let skin = steps.run("groom", || skin::groom(task.asset, &task.asset.parts[part], task.preset, task.scale))?;
-        let method = Parameterisation::Atlas { texels_per_tile: recipe.shells.texture_size, padding_texels: PADDING };
-        let start = Instant::now();
-        let charts = steps.run("patches", || parameterise(&skin.mesh, &skin.fields.direction, tile_m, method))?;
-        times_ms.push(start.elapsed().as_secs_f64() * 1e3);
-        warnings.extend(skin.notes.iter().chain(&charts.stats.warnings).cloned());
-        groomed.push(skin);
-        patches.push(charts);
-    }
+    let all = steps.run("groom", || task.groom(task.preset))?;
+    let groomed = steps.run("groom", || all.cut(|part| task.parts.contains(&(part as usize))));
+    let (mesh, fields) = (groomed.mesh(), &groomed.fields);
+    let method = Parameterisation::Atlas { texels_per_tile: recipe.shells.texture_size, padding_texels: PADDING };
+    let start = Instant::now();
+    let mut patches = vec![steps.run("patches", || parameterise(mesh, &fields.direction, tile_m, method))?];
+    let ms = start.elapsed().as_secs_f64() * 1e3;
+    let warnings = groomed.notes.iter().chain(&patches[0].stats.warnings).cloned().collect();
     let square = steps.run("patches", || fit_atlas(&mut patches, tile_m, texels, PADDING))?;
-    let skins: Vec<atlas::AtlasSkin<'_>> = (0..groomed.len())
-        .map(|i| atlas::AtlasSkin {
-            mesh: &groomed[i].mesh,
-            fields: &groomed[i].fields,
-            patches: &patches[i],
-            seed: task.seed(task.parts[i]),
-        })
-        .collect();
+    let patches = &patches[0];
+    let skin = atlas::AtlasSkin { mesh, fields, patches, seed: task.request.seed };
     let tile =
-        steps.run("atlas", || atlas::bake(&skins, &square, [&fibres[0], &fibres[1]], &recipe, task.request.seed));
-    let carried = (0..groomed.len())
-        .map(|i| {
-            let primitive =
-                steps.run("coat primitives", || task.coat_primitive(task.parts[i], &groomed[i], &patches[i], &tile));
-            // Charts were measured in tiles; the square has its own texels.
-            let texels_per_tile = f64::from(tile_m) * f64::from(texels) / f64::from(square.edge_m);
-            let laid = Laid {
-                material: task.asset.parts[task.parts[i]].material_name.clone(),
-                singularities: groomed[i].singularities.clone(),
-                measures: Measures::new(&patches[i].stats, texels_per_tile, None),
-                ms: times_ms[i],
-            };
-            (vec![primitive], laid)
-        })
-        .collect();
-    // The largest skin speaks for all: each place means growing its hair again, every single one.
-    let area_m2 = |i: &usize| patches[*i].stats.area_m2;
-    let largest = (0..groomed.len()).max_by(|a, b| area_m2(a).total_cmp(&area_m2(b)));
-    let judged = largest.filter(|_| task.request.judge).map(|i| {
-        let (mesh, fields, seed) = (&groomed[i].mesh, &groomed[i].fields, skins[i].seed);
+        steps.run("atlas", || atlas::bake(&[skin], &square, [&fibres[0], &fibres[1]], &recipe, task.request.seed));
+    let carried = steps.run("coat primitives", || task.coat_primitives(&groomed, patches, &tile));
+    // Charts were measured in tiles; the square has its own texels.
+    let texels_per_tile = f64::from(tile_m) * f64::from(texels) / f64::from(square.edge_m);
+    let laid = Laid {
+        material: task.materials(task.parts),
+        singularities: groomed.singularities.clone(),
+        measures: Measures::new(&patches.stats, texels_per_tile, None),
+        ms,
+    };
+    let judged = task.request.judge.then(|| {
         let furred = |t: usize| mesh.triangles[t].iter().all(|&v| fields.length[v as usize] > 0.0);
-        let at = judge::places(mesh, PLACES, seed, furred);
+        let at = judge::places(mesh, PLACES, skin.seed, furred);
         let carried =
-            judge::CoatedSkin { mesh, fields, patches: &patches[i], tile: &tile, hair: [&fibres[0], &fibres[1]], seed };
+            judge::CoatedSkin { mesh, fields, patches, tile: &tile, hair: [&fibres[0], &fibres[1]], seed: skin.seed };
         steps.run("judge", || judge::surface_tables(&carried, &[at]))
     });
     let accuracy = judged.into_iter().flatten().collect();
@@ -82,5 +62,5 @@ pub(super) fn coat_parts(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps
         task.preset.name,
         square.edge_m / texels as f32 * 1e3
     );
-    Ok(CoatedParts { tiles: vec![tile], primitives: carried, accuracy, notes: vec![note], warnings })
+    Ok(CoatedParts { tiles: vec![tile], primitives: carried, laid: vec![laid], accuracy, notes: vec![note], warnings })
 }

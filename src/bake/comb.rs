@@ -4,7 +4,8 @@ use crate::asset::Asset;
 use crate::data::mesh::Mesh;
 use crate::error::Result;
 use crate::fur::field::{DirectionField, FieldSource, Whorl, directions};
-use crate::fur::groom::maps::{Maps, comb_directions};
+use crate::data::maps::Maps;
+use crate::fur::groom::maps::comb_directions;
 use crate::fur::groom::{Comb, Groom, Place};
 use crate::math::{DVec3, Vec3};
 

@@ -6,6 +6,7 @@ pub mod picture;
 mod regions;
 mod skin;
 pub mod units;
+mod weld;
 
 use crate::asset::coat::{Fallback, refuse_second, write_coat};
 use crate::asset::{self, Asset, Part};
@@ -13,23 +14,25 @@ use crate::coat::axes::axes;
 use crate::coat::hair::{TileHair, leaning};
 use crate::coat::judge::{CoverageRow, Effort, coverage_table};
 use crate::coat::measures::Measures;
-use crate::coat::primitive::coat_primitive;
+use crate::coat::primitive::{Local, coat_primitive};
 use crate::coat::seams::{WINDOWS, before_after};
 use crate::coat::tile::{TileRecipe, bake as bake_tile};
 use crate::data::coat::{Blend, Coat, CoatPrimitive, Tile};
+use crate::data::fields::Fields;
 use crate::data::patches::Patches;
 use crate::error::{Error, Result};
 use crate::fur::field::Singularity;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::patch::{Parameterisation, parameterise};
-use crate::math::Vec3;
-use crate::math::hash::combine;
+use crate::math::{Vec2, Vec3};
 use crate::metrics::timing;
 use crate::preset::Preset;
 use skin::Groomed;
+use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use units::{Scale, Units};
+use weld::Skin;
 
 /// How to choose texture coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,7 +86,7 @@ pub struct Baked {
     pub materials: Vec<String>,
     /// Bounding diagonal that lengths refer to, m.
     pub diagonal_m: f64,
-    /// Comb and parameterisation of each furred part.
+    /// Comb and parameterisation of what was laid out together.
     pub laid: Vec<Laid>,
     /// Coverage of each tile against its strands, when asked for.
     pub accuracy: Vec<Vec<CoverageRow>>,
@@ -91,10 +94,10 @@ pub struct Baked {
     pub steps: timing::Steps,
 }
 
-/// How one primitive's hair lies.
+/// How hair lies on the parts that were laid out together.
 #[derive(Clone, Debug)]
 pub struct Laid {
-    /// Its material.
+    /// Their materials, with commas between.
     pub material: String,
     /// Where its comb has no direction.
     pub singularities: Vec<Singularity>,
@@ -152,6 +155,9 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
         accuracy: Vec::new(),
         steps: timing::Steps::default(),
     };
+    let hair_m = Fibre::guard(&request.preset.guard, &request.preset.colour, scale.diagonal_m as f32).length_m;
+    let skin = steps
+        .run("weld", || weld::join(&asset, |part| chosen.contains(&part), scale.metres_per_unit, hair_m))?;
     // One tile per preset; primitives with the same preset share it.
     let mut tiles: Vec<(&Preset, Vec<usize>)> = Vec::new();
     for &index in &chosen {
@@ -161,9 +167,9 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
             None => tiles.push((preset, vec![index])),
         }
     }
-    let mut carried: Vec<(usize, Vec<CoatPrimitive>, Laid)> = Vec::new();
+    let mut carried: Vec<(usize, CoatPrimitive)> = Vec::new();
     for (preset, parts) in &tiles {
-        let task = Task { asset: &asset, preset, parts, request, scale: &scale };
+        let task = Task { asset: &asset, skin: &skin, preset, parts, request, scale: &scale };
         let coated = match request.method {
             Method::Atlas { texels } => atlas::coat_parts(&task, texels, &mut steps)?,
             Method::Lapped => coat_parts(&task, |seed| Parameterisation::Lapped { seed }, &mut steps)?,
@@ -185,18 +191,11 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
         }
         baked.accuracy.extend(coated.accuracy);
         coat.tiles.extend(coated.tiles);
-        carried.extend(
-            parts
-                .iter()
-                .zip(coated.primitives)
-                .map(|(&index, (primitives, laid))| (index, primitives.into_iter().map(numbered).collect(), laid)),
-        );
+        carried.extend(coated.primitives.into_iter().map(|(index, primitive)| (index, numbered(primitive))));
+        baked.laid.extend(coated.laid);
     }
-    carried.sort_by_key(|(index, ..)| *index);
-    for (_, primitives, laid) in carried {
-        coat.primitives.extend(primitives);
-        baked.laid.push(laid);
-    }
+    carried.sort_by_key(|(index, _)| *index);
+    coat.primitives.extend(carried.into_iter().map(|(_, primitive)| primitive));
     notes.extend(steps.run("write", || write_coat(&asset, &coat, request.fallback, &request.out))?);
     baked.coat = coat;
     (baked.notes, baked.warnings) = (notes, warnings);
@@ -207,6 +206,8 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
 /// Parts that one tile is made for.
 struct Task<'a> {
     asset: &'a Asset,
+    /// All parts as one surface.
+    skin: &'a Skin,
     preset: &'a Preset,
     /// Their indices.
     parts: &'a [usize],
@@ -218,8 +219,9 @@ struct Task<'a> {
 struct CoatedParts {
     /// The preset's own, then those of its regions.
     tiles: Vec<Tile>,
-    /// Per part of the task; tiles are numbered as above.
-    primitives: Vec<(Vec<CoatPrimitive>, Laid)>,
+    /// Each with its part; tiles are numbered as above.
+    primitives: Vec<(usize, CoatPrimitive)>,
+    laid: Vec<Laid>,
     /// Per tile, where asked for.
     accuracy: Vec<Vec<CoverageRow>>,
     notes: Vec<String>,
@@ -236,18 +238,51 @@ impl Task<'_> {
         ]
     }
 
-    /// Decides what is random on a part.
-    fn seed(&self, part: usize) -> u64 {
-        combine(self.request.seed, part as u64)
+    /// The skin with this preset's fields, all of it: what has no hair is part of the surface.
+    fn groom(&self, preset: &Preset) -> Result<Groomed> {
+        skin::groom(self.asset, self.skin, |_| false, preset, self.scale)
     }
 
-    /// What a part carries.
-    fn coat_primitive(&self, part: usize, groomed: &Groomed, patches: &Patches, tile: &Tile) -> CoatPrimitive {
+    /// What some of the task's parts are called.
+    fn materials(&self, parts: &[usize]) -> String {
+        names(parts.iter().map(|&part| &self.asset.parts[part])).join(", ")
+    }
+
+    /// What each part of `groomed` carries of `patches`, which lie on all of it.
+    fn coat_primitives(&self, groomed: &Groomed, patches: &Patches, tile: &Tile) -> Vec<(usize, CoatPrimitive)> {
+        let axes = axes(groomed.mesh(), &groomed.fields.direction, patches);
+        let mut triangles: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        groomed.skin.part_of.iter().enumerate().for_each(|(t, &part)| triangles.entry(part).or_default().push(t));
+        let carried = |(&part, triangles): (&u32, &Vec<usize>)| {
+            let own = if triangles.len() == patches.triangles.len() { None } else { Some(subset(patches, triangles, 1.0)) };
+            let own = own.as_ref().unwrap_or(patches);
+            (part as usize, self.coat_primitive(part as usize, groomed, &groomed.fields, &axes, own, tile))
+        };
+        triangles.iter().map(carried).filter(|(_, primitive)| !primitive.triangles.is_empty()).collect()
+    }
+
+    /// What a part carries of `patches`, which lie on it alone.
+    fn coat_primitive(
+        &self,
+        part: usize,
+        groomed: &Groomed,
+        fields: &Fields,
+        axes: &[Vec3],
+        patches: &Patches,
+        tile: &Tile,
+    ) -> CoatPrimitive {
         let at = &self.asset.parts[part];
-        let local = |v, offset_m| at.local_offset(v, offset_m, self.scale.metres_per_unit);
-        let axes = axes(&groomed.mesh, &groomed.fields.direction, patches);
-        let carried = coat_primitive(&groomed.mesh, &groomed.fields, &axes, patches, tile, self.seed(part), local);
-        CoatPrimitive { mesh: at.mesh, primitive: at.primitive, ..carried }
+        let stored = |v: usize| groomed.skin.stored[v].1 as usize;
+        let local = Local {
+            offset: &|v, offset_m| at.local_offset(stored(v), offset_m, self.scale.metres_per_unit),
+            normal: &|v, normal: Vec3| {
+                let turned = at.world_from_local(stored(v)).transpose() * normal.as_dvec3();
+                turned.normalize_or(normal.as_dvec3()).as_vec3()
+            },
+        };
+        let carried = coat_primitive(groomed.mesh(), fields, axes, patches, tile, self.request.seed, &local);
+        let base_vertex = carried.base_vertex.iter().map(|&v| stored(v as usize) as u32).collect();
+        CoatPrimitive { mesh: at.mesh, primitive: at.primitive, base_vertex, ..carried }
     }
 }
 
@@ -284,36 +319,56 @@ fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: 
         tiles.push(tile);
         accuracy.extend(rows);
     }
-    let (mut carried, mut warnings) = (Vec::new(), Vec::new());
-    for &part in task.parts {
-        let groomed =
-            steps.run("groom", || skin::groom(task.asset, &task.asset.parts[part], task.preset, task.scale))?;
+    let (mut carried, mut warnings, mut laid) = (Vec::new(), Vec::new(), Vec::new());
+    let all = steps.run("groom", || task.groom(task.preset))?;
+    // An asset's own coordinates are every part's by itself.
+    let alone = matches!(request.method, Method::Uv(_));
+    let sets: Vec<&[usize]> = if alone { task.parts.chunks(1).collect() } else { vec![task.parts] };
+    for parts in sets {
+        let groomed = steps.run("groom", || all.cut(|part| parts.contains(&(part as usize))));
         let (direction, edge_m) = (&groomed.fields.direction, tiles[0].edge_m);
         let start = Instant::now();
         let patches =
-            steps.run("patches", || parameterise(&groomed.mesh, direction, edge_m, method(task.seed(part))))?;
+            steps.run("patches", || parameterise(groomed.mesh(), direction, edge_m, method(request.seed)))?;
         let ms = start.elapsed().as_secs_f64() * 1e3;
         warnings.extend(groomed.notes.iter().chain(&patches.stats.warnings).cloned());
         let seams = request.judge.then(|| {
             steps.run("judge seams", || {
-                let axes = axes(&groomed.mesh, &groomed.fields.direction, &patches);
-                before_after(&groomed.mesh, &groomed.offsets(), &axes, &patches, &tiles[0], WINDOWS).into()
+                let axes = axes(groomed.mesh(), &groomed.fields.direction, &patches);
+                before_after(groomed.mesh(), &groomed.offsets(), &axes, &patches, &tiles[0], WINDOWS).into()
             })
         });
-        let primitives = if others.is_empty() {
-            vec![steps.run("coat primitives", || task.coat_primitive(part, &groomed, &patches, &tiles[0]))]
+        carried.extend(if others.is_empty() {
+            steps.run("coat primitives", || task.coat_primitives(&groomed, &patches, &tiles[0]))
         } else {
-            regions::wear_all(task, part, &groomed, &patches, (&others, &tiles), steps)?
-        };
-        let laid = Laid {
-            material: task.asset.parts[part].material_name.clone(),
+            regions::wear_all(task, parts, &groomed, &patches, (&others, &tiles), steps)?
+        });
+        laid.push(Laid {
+            material: task.materials(parts),
             singularities: groomed.singularities,
             measures: Measures::new(&patches.stats, f64::from(tiles[0].shells.size), seams),
             ms,
-        };
-        carried.push((primitives, laid));
+        });
     }
-    Ok(CoatedParts { tiles, primitives: carried, accuracy, notes: Vec::new(), warnings })
+    Ok(CoatedParts { tiles, primitives: carried, laid, accuracy, notes: Vec::new(), warnings })
+}
+
+/// Some triangles of patches on the vertices that they need, with coordinates `scale` times as large.
+fn subset(patches: &Patches, triangles: &[usize], scale: f32) -> Patches {
+    let mut new: HashMap<u32, u32> = HashMap::new();
+    let mut part = Patches { extent: Vec2::ZERO, ..Patches::default() };
+    for &t in triangles {
+        let triangle = patches.triangles[t].map(|old| {
+            *new.entry(old).or_insert_with(|| {
+                part.base_vertex.push(patches.base_vertex[old as usize]);
+                part.uv.push(patches.uv[old as usize] * scale);
+                part.patch.push(patches.patch[old as usize]);
+                part.uv.len() as u32 - 1
+            })
+        });
+        part.triangles.push(triangle);
+    }
+    part
 }
 
 fn preset_of<'a>(request: &'a Request, part: &Part) -> &'a Preset {

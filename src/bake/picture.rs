@@ -2,13 +2,13 @@
 
 use super::skin::{self, Groomed};
 use super::units::{self, Units};
-use crate::asset;
+use super::weld;
+use crate::asset::{self, Asset, Pose};
 use crate::asset::strands::Export;
 use crate::coat::hair::TileHair;
 use crate::coat::primitive::{is_furred, offset_over_height};
 use crate::data::camera::Camera;
 use crate::data::film::Film;
-use crate::data::mesh::Mesh;
 use crate::data::subject::Subject;
 use crate::error::Result;
 use crate::fur::groom::fibre::Fibre;
@@ -89,29 +89,13 @@ impl Grown {
         let fibre = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
         let undercoat = Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m);
         let tile = TileHair::grow(&fibre, &undercoat, preset.shells.tile_mm * 1e-3, request.seed);
-        let mut hair_m = Vec::with_capacity(asset.parts.len());
-        let mut all: Option<Groomed> = None;
-        for (index, part) in asset.parts.iter().enumerate() {
-            let mut groomed = skin::groom(&asset, part, preset, &scale)?;
-            if !chosen.contains(&index) {
-                groomed.fields.density.fill(0.0);
-                // The renderer tints all skin by the preset's factor, which is not for bare skin.
-                let factor = Vec3::from(preset.colour.skin).max(Vec3::splat(1e-6));
-                let own = skin::bare_colour(&asset, part, &groomed.mesh)?;
-                groomed.fields.tint = own.into_iter().map(|colour| colour / factor).collect();
-            }
-            hair_m.push(reaches_m(&groomed, tile.height_m));
-            if let Some(pose) = &pose {
-                groomed = groomed.pose(&asset, part, pose, scale.metres_per_unit)?;
-            }
-            notes.append(&mut groomed.notes);
-            match &mut all {
-                None => all = Some(groomed),
-                Some(all) => join(all, groomed),
-            }
-        }
-        let groomed = all.unwrap_or_else(|| unreachable!("an asset without parts is refused when it is read"));
-        let strands = grow::skin::grow(&fibre, &groomed.mesh, &groomed.fields, request.seed);
+        let furred = |part: usize| chosen.contains(&part);
+        let skin = weld::join(&asset, furred, scale.metres_per_unit, fibre.length_m)?;
+        let whole = skin::groom(&asset, &skin, |part| !furred(part), preset, &scale)?;
+        let hair_m = reaches_m(&asset, &whole, tile.height_m);
+        let groomed = shown(&asset, whole, pose.as_ref(), scale.metres_per_unit)?;
+        notes.extend(groomed.notes.iter().cloned());
+        let strands = grow::skin::grow(&fibre, groomed.mesh(), &groomed.fields, request.seed);
         Ok(Self {
             guard: (strands, fibre),
             undercoat,
@@ -126,7 +110,7 @@ impl Grown {
 
     /// Where the origin of the renderer's coordinates lies in the world, m.
     pub fn origin_m(&self) -> DVec3 {
-        self.groomed.mesh.origin_m
+        self.groomed.mesh().origin_m
     }
 
     /// The guard hairs, to be written to a file; `name` is what they are called there.
@@ -137,7 +121,7 @@ impl Grown {
     /// What the renderer needs.
     pub fn scene(&self) -> Scene<'_> {
         Scene {
-            skin: &self.groomed.mesh,
+            skin: self.groomed.mesh(),
             fields: &self.groomed.fields,
             skin_factor: self.skin_factor,
             guard: (self.only != Only::Undercoat).then_some((&self.guard.0, &self.guard.1)),
@@ -171,32 +155,35 @@ impl Grown {
     }
 }
 
-/// How far hair reaches from each vertex, m, as a bake would store it: 0 where none grows.
-fn reaches_m(groomed: &Groomed, height_m: f32) -> Vec<f32> {
-    let Groomed { mesh, fields, .. } = groomed;
-    let mut reaches_m = vec![0.0; mesh.positions_m.len()];
-    let furred = mesh.triangles.iter().map(|t| t.map(|v| v as usize)).filter(|t| is_furred(fields, *t));
-    furred.flatten().for_each(|v| reaches_m[v] = offset_over_height(fields, v).length() * height_m);
+/// How far hair reaches from each vertex of each part, m, as a bake would store it: 0 where none grows.
+fn reaches_m(asset: &Asset, groomed: &Groomed, height_m: f32) -> Vec<Vec<f32>> {
+    let mut reaches_m: Vec<Vec<f32>> = asset.parts.iter().map(|part| vec![0.0; part.vertices()]).collect();
+    let triangles = groomed.mesh().triangles.iter().map(|t| t.map(|v| v as usize));
+    for v in triangles.filter(|t| is_furred(&groomed.fields, *t)).flatten() {
+        let (part, stored) = groomed.skin.stored[v];
+        let reach_m = &mut reaches_m[part as usize][stored as usize];
+        *reach_m = reach_m.max(offset_over_height(&groomed.fields, v).length() * height_m);
+    }
     reaches_m
 }
 
-/// Adds a part's skin and fields to those before it.
-fn join(all: &mut Groomed, next: Groomed) {
-    let (mesh, other): (&mut Mesh, Mesh) = (&mut all.mesh, next.mesh);
-    let first = mesh.positions_m.len() as u32;
-    let shift = (other.origin_m - mesh.origin_m).as_vec3();
-    mesh.positions_m.extend(other.positions_m.iter().map(|&p| p + shift));
-    if let (Some(rest), Some(other)) = (&mut mesh.rest_m, other.rest_m) {
-        rest.extend(other.iter().map(|&p| p + shift));
+/// The skin as the scene shows it: in a pose, and once more for every further node of a mesh.
+fn shown(asset: &Asset, rest: Groomed, pose: Option<&Pose>, metres_per_unit: f64) -> Result<Groomed> {
+    let most = asset.parts.iter().map(|part| part.nodes.len()).max().unwrap_or(1);
+    let at_rest = asset.rest_pose()?;
+    let mut all: Option<Groomed> = None;
+    for number in 0..most {
+        let node = |part: usize| asset.parts[part].nodes[number];
+        let here = |part: u32| asset.parts[part as usize].nodes.len() > number;
+        let next = match (number, pose) {
+            (0, None) => rest.clone(),
+            (0, Some(pose)) => rest.pose(asset, pose, node, metres_per_unit)?,
+            (_, pose) => rest.cut(here).pose(asset, pose.unwrap_or(&at_rest), node, metres_per_unit)?,
+        };
+        match &mut all {
+            None => all = Some(next),
+            Some(all) => all.append(next),
+        }
     }
-    mesh.normals.extend(other.normals);
-    mesh.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + first)));
-    mesh.position_class.extend(other.position_class.iter().map(|c| c + first));
-    let (fields, other) = (&mut all.fields, next.fields);
-    fields.length.extend(other.length);
-    fields.density.extend(other.density);
-    fields.direction.extend(other.direction);
-    fields.lean.extend(other.lean);
-    fields.clump.extend(other.clump);
-    fields.tint.extend(other.tint);
+    Ok(all.unwrap_or(rest))
 }

@@ -1,19 +1,18 @@
 //! Several presets on one part: which tile each triangle carries, and where one passes into another.
 
-use super::skin::{self, Groomed};
-use super::{Steps, Task};
+use super::skin::Groomed;
+use super::{Steps, Task, subset};
 use crate::asset::image;
 use crate::coat::axes::axes;
-use crate::coat::primitive::coat_primitive;
 use crate::data::coat::{Blend, CoatPrimitive, Tile};
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::data::patches::Patches;
 use crate::error::{Error, Result};
-use crate::fur::groom::maps::sample;
-use crate::math::{Vec2, Vec3};
+use crate::data::maps::sample;
+use crate::math::Vec3;
 use crate::preset::{Preset, Region};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// Shares below this are none: eight bits of a map tell no less.
 const LEAST: f32 = 1.0 / 255.0;
@@ -34,28 +33,27 @@ pub(super) fn presets(preset: &Preset) -> Result<Vec<Preset>> {
     preset.regions.iter().map(load).collect()
 }
 
-/// What a part carries: one coat primitive for each tile that some triangle carries alone, and one for each pair that share
+/// What parts carry: one coat primitive for each tile that some triangle of a part carries alone, and one for each pair that share
 /// triangles. `tiles` are the task's own and those of `presets`.
 pub(super) fn wear_all(
     task: &Task<'_>,
-    part: usize,
+    parts: &[usize],
     own: &Groomed,
     patches: &Patches,
     (presets, tiles): (&[Preset], &[Tile]),
     steps: &mut Steps<'_>,
-) -> Result<Vec<CoatPrimitive>> {
-    let at = &task.asset.parts[part];
-    let shares = shares(&own.mesh, &task.preset.regions)?;
+) -> Result<Vec<(usize, CoatPrimitive)>> {
+    let shares = shares(own.mesh(), &task.preset.regions)?;
     let mut fields = vec![own.fields.clone()];
     for preset in presets {
-        let groomed = steps.run("groom", || skin::groom(task.asset, at, preset, task.scale))?;
-        fields.push(groomed.fields);
+        let groomed = steps.run("groom", || task.groom(preset))?;
+        fields.push(groomed.cut(|part| parts.contains(&(part as usize))).fields);
     }
-    let axes = axes(&own.mesh, &own.fields.direction, patches);
+    let axes = axes(own.mesh(), &own.fields.direction, patches);
     let mixed = Mixed::new(&fields, tiles, &shares);
-    // Triangles by what they carry.
-    let mut groups: BTreeMap<(usize, Option<usize>), Vec<usize>> = BTreeMap::new();
-    for (t, triangle) in own.mesh.triangles.iter().enumerate() {
+    // Triangles by their part and what they carry.
+    let mut groups: BTreeMap<(u32, usize, Option<usize>), Vec<usize>> = BTreeMap::new();
+    for (t, triangle) in own.mesh().triangles.iter().enumerate() {
         let mut carried: Vec<(usize, f32)> = (0..tiles.len())
             .map(|tile| (tile, triangle.iter().map(|&v| shares[v as usize][tile]).sum()))
             .filter(|&(_, share)| share > 0.0)
@@ -64,13 +62,13 @@ pub(super) fn wear_all(
         carried.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         carried.truncate(2);
         carried.sort_by_key(|&(tile, _)| tile);
-        groups.entry((carried[0].0, carried.get(1).map(|w| w.0))).or_default().push(t);
+        let key = (own.skin.part_of[t], carried[0].0, carried.get(1).map(|w| w.0));
+        groups.entry(key).or_default().push(t);
     }
-    let coated = |((tile, into), triangles): (&(usize, Option<usize>), &Vec<usize>)| {
+    let coated = |((part, tile, into), triangles): (&(u32, usize, Option<usize>), &Vec<usize>)| {
         let fields = mixed.for_tile(&tiles[*tile]);
         let subset = subset(patches, triangles, tiles[0].edge_m / tiles[*tile].edge_m);
-        let local = |v, offset_m| at.local_offset(v, offset_m, task.scale.metres_per_unit);
-        let carried = coat_primitive(&own.mesh, &fields, &axes, &subset, &tiles[*tile], task.seed(part), local);
+        let carried = task.coat_primitive(*part as usize, own, &fields, &axes, &subset, &tiles[*tile]);
         let weight = |second: usize, v: u32| {
             let share = &shares[v as usize];
             let both = share[*tile] + share[second];
@@ -78,12 +76,13 @@ pub(super) fn wear_all(
         };
         let blend = into.map(|second| Blend {
             tile: second,
-            weight: carried.base_vertex.iter().map(|&v| weight(second, v)).collect(),
+            weight: subset.base_vertex.iter().map(|&v| weight(second, v)).collect(),
         });
-        CoatPrimitive { mesh: at.mesh, primitive: at.primitive, tile: *tile, blend, ..carried }
+        (*part as usize, CoatPrimitive { tile: *tile, blend, ..carried })
     };
-    Ok(steps
-        .run("coat primitives", || groups.iter().map(coated).filter(|carried| !carried.triangles.is_empty()).collect()))
+    Ok(steps.run("coat primitives", || {
+        groups.iter().map(coated).filter(|(_, carried)| !carried.triangles.is_empty()).collect()
+    }))
 }
 
 /// Per vertex, the share of the preset's own tile and of each region's; they sum to 1.
@@ -145,6 +144,7 @@ impl Mixed {
                 lean: (0..count).map(|v| sum3(v, &|t| fields[t].lean[v]).normalize_or(fields[0].lean[v])).collect(),
                 clump: fields[0].clump.clone(),
                 tint: (0..count).map(|v| sum3(v, &|t| fields[t].tint[v])).collect(),
+                paint: None,
             },
         }
     }
@@ -155,22 +155,4 @@ impl Mixed {
         fields.length.iter_mut().for_each(|length| *length /= tile.height_m);
         fields
     }
-}
-
-/// Some triangles of patches on the vertices that they need, with coordinates `scale` times as large.
-fn subset(patches: &Patches, triangles: &[usize], scale: f32) -> Patches {
-    let mut new: HashMap<u32, u32> = HashMap::new();
-    let mut part = Patches { extent: Vec2::ZERO, ..Patches::default() };
-    for &t in triangles {
-        let triangle = patches.triangles[t].map(|old| {
-            *new.entry(old).or_insert_with(|| {
-                part.base_vertex.push(patches.base_vertex[old as usize]);
-                part.uv.push(patches.uv[old as usize] * scale);
-                part.patch.push(patches.patch[old as usize]);
-                part.uv.len() as u32 - 1
-            })
-        });
-        part.triangles.push(triangle);
-    }
-    part
 }

@@ -1,25 +1,31 @@
-//! One part made ready for fur: its mesh in metres and the fields on it.
+//! The skin made ready for fur: its mesh in metres, what is painted on it and the fields over it.
 
 use super::comb::comb;
 use super::units::Scale;
+use super::weld::Skin;
 use crate::asset::material::BaseColour;
-use crate::asset::{Asset, Part, Pose, image};
+use crate::asset::{Asset, Pose, Posed, image};
 use crate::coat::primitive::offset_over_height;
 use crate::data::fields::Fields;
+use crate::data::image::Image8;
+use crate::data::maps::Maps;
 use crate::data::mesh::Mesh;
+use crate::data::paint::{Paint, Painted};
+use crate::data::texture::Texture;
 use crate::error::Result;
 use crate::fur::field::Singularity;
 use crate::fur::groom::fibre::Fibre;
-use crate::fur::groom::maps::Maps;
 use crate::fur::groom::{ColourSource, fields};
-use crate::math::{Vec3, Vec4};
+use crate::math::{Mat3, Vec3, Vec4};
 use crate::preset::{self, Preset};
+use std::collections::HashMap;
+use std::sync::Arc;
 
-/// Mesh, fields, and what to tell the user of them.
-#[derive(Debug)]
+/// Skin, fields, and what to tell the user of them.
+#[derive(Clone, Debug)]
 pub struct Groomed {
     /// The skin.
-    pub mesh: Mesh,
+    pub skin: Skin,
     /// The fields on it.
     pub fields: Fields,
     /// Where the comb has no direction, in the rest pose.
@@ -28,57 +34,143 @@ pub struct Groomed {
     pub notes: Vec<String>,
 }
 
-impl Groomed {
-    /// Root to the top of the stack over the stack's height, one per vertex, world axes.
-    pub fn offsets(&self) -> Vec<Vec3> {
-        (0..self.fields.lean.len()).map(|v| offset_over_height(&self.fields, v)).collect()
-    }
-}
-
-/// Gathers everything that decides how hair lies on `part`.
-pub fn groom(asset: &Asset, part: &Part, preset: &Preset, scale: &Scale) -> Result<Groomed> {
-    let metres_per_unit = scale.metres_per_unit;
-    let mesh = part.mesh(metres_per_unit)?;
-    let maps = decode(&preset.maps)?;
+/// Gathers everything that decides how hair lies on `skin`. Parts that `bare` says have no hair; with `preset` they share but its
+/// comb.
+///
+/// # Errors
+/// When a map or texture cannot be read, or the comb's sources make no sense.
+pub fn groom(
+    asset: &Asset,
+    skin: &Skin,
+    bare: impl Fn(usize) -> bool,
+    preset: &Preset,
+    scale: &Scale,
+) -> Result<Groomed> {
     let mut notes = Vec::new();
-    if !maps.is_empty() && mesh.uv_sets.is_empty() {
-        notes.push(format!("material {:?} has no texture coordinates: groom maps are left out", part.material_name));
-    }
-    let comb = comb(asset, &mesh, &preset.groom, &maps, metres_per_unit, &mut notes)?;
-    let tint = tint(asset, part, &mesh, preset)?;
+    let maps = Arc::new(decode(&preset.maps)?);
+    let paint = paint(asset, skin, &bare, preset, &maps, &mut notes)?;
+    let comb = comb(asset, &skin.mesh, &preset.groom, &maps, scale.metres_per_unit, &mut notes)?;
     let diagonal_m = scale.diagonal_m as f32;
     let guard = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
     let undercoat = Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m);
     // Undercoat must not cross, as it is a volume; single guard hairs may.
     let height_m = if undercoat.height_m() > 0.0 { undercoat.height_m() } else { guard.height_m() };
-    let fields = fields::gather(&mesh, &preset.groom, &maps, comb.direction, tint, height_m);
-    Ok(Groomed { fields, mesh, singularities: comb.singularities, notes })
+    let fields = fields::gather(&skin.mesh, &preset.groom, paint, comb.direction, height_m);
+    Ok(Groomed { fields, skin: skin.clone(), singularities: comb.singularities, notes })
 }
 
 impl Groomed {
-    /// Puts the skin into a pose. Hair follows it as a coat's does: by the map of the skin under its root, without growing
-    /// longer where the skin is stretched.
+    /// The mesh of the skin.
+    pub fn mesh(&self) -> &Mesh {
+        &self.skin.mesh
+    }
+
+    /// Root to the top of the stack over the stack's height, one per vertex, world axes.
+    pub fn offsets(&self) -> Vec<Vec3> {
+        (0..self.fields.lean.len()).map(|v| offset_over_height(&self.fields, v)).collect()
+    }
+
+    /// Some parts of it, with hair as on the whole.
+    pub fn cut(&self, keep: impl Fn(u32) -> bool) -> Self {
+        let (skin, old) = self.skin.cut(keep);
+        fn at<T: Copy>(list: &[T], old: &[u32]) -> Vec<T> {
+            old.iter().map(|&v| list[v as usize]).collect()
+        }
+        let Fields { length, density, direction, lean, clump, tint, paint } = &self.fields;
+        let cut_paint = |paint: &Arc<Paint>| {
+            Arc::new(Paint {
+                parts: paint.parts.clone(),
+                part_of: at(&paint.part_of, &old),
+                factor: at(&paint.factor, &old),
+                longest: at(&paint.longest, &old),
+            })
+        };
+        let fields = Fields {
+            length: at(length, &old),
+            density: at(density, &old),
+            direction: at(direction, &old),
+            lean: at(lean, &old),
+            clump: at(clump, &old),
+            tint: at(tint, &old),
+            paint: paint.as_ref().map(cut_paint),
+        };
+        Self { skin, fields, singularities: self.singularities.clone(), notes: self.notes.clone() }
+    }
+
+    /// Puts the skin into a pose, every part as the node shows it that `node_of` names. Hair follows it as a coat's does: by the
+    /// map of the skin under its root, without growing longer where the skin is stretched.
     ///
     /// # Errors
     /// Where the pose takes a vertex beyond what f32 can hold.
-    pub fn pose(self, asset: &Asset, part: &Part, pose: &Pose, metres_per_unit: f64) -> Result<Self> {
-        let posed = part.posed(asset, pose, part.nodes[0], metres_per_unit);
-        let Self { mesh, mut fields, singularities, notes } = self;
-        let turned = |v: usize, direction: Vec3| {
-            let local = part.local_from_world(v) * (direction.as_dvec3() / metres_per_unit);
-            posed.world_from_offset[v].as_dmat3() * local
-        };
-        for v in 0..mesh.positions_m.len() {
-            let along = turned(v, fields.direction[v]).as_vec3();
-            fields.direction[v] = along.reject_from(posed.normals[v]).normalize_or_zero();
-            fields.lean[v] = turned(v, fields.lean[v]).as_vec3().normalize_or(posed.normals[v]);
+    pub fn pose(
+        &self,
+        asset: &Asset,
+        pose: &Pose,
+        node_of: impl Fn(usize) -> usize,
+        metres_per_unit: f64,
+    ) -> Result<Self> {
+        let Self { skin, mut fields, singularities, notes } = self.clone();
+        let mut posed: HashMap<u32, Posed> = HashMap::new();
+        for &(part, _) in &skin.stored {
+            posed.entry(part).or_insert_with(|| {
+                let index = part as usize;
+                asset.parts[index].posed(asset, pose, node_of(index), metres_per_unit)
+            });
         }
-        let mut mesh =
-            Mesh { rest_m: Some(mesh.positions_m), positions_m: posed.positions_m, normals: posed.normals, ..mesh };
-        if posed.mirrored != part.mirrored() {
-            mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        // Normals turn with the skin, and so does the direction in which hair stands.
+        let rest_normals = skin.mesh.smooth_normals();
+        let mut mesh = skin.mesh;
+        let rest_m = mesh.positions_m.clone();
+        for (v, &(part, stored)) in skin.stored.iter().enumerate() {
+            let (part, of, stored) = (&asset.parts[part as usize], &posed[&part], stored as usize);
+            let local = part.local_from_world(stored) / metres_per_unit;
+            let turn: Mat3 = (of.world_from_offset[stored].as_dmat3() * local).as_mat3();
+            let normal = (turn.inverse().transpose() * rest_normals[v]).normalize_or(of.normals[stored]);
+            let along = turn * fields.direction[v];
+            fields.direction[v] = along.reject_from(normal).normalize_or_zero();
+            fields.lean[v] = (turn * fields.lean[v]).normalize_or(normal);
+            mesh.positions_m[v] = of.positions_m[stored];
+            mesh.normals[v] = of.normals[stored];
         }
-        Ok(Self { mesh: mesh.checked()?, fields, singularities, notes })
+        for (triangle, part) in mesh.triangles.iter_mut().zip(&skin.part_of) {
+            if posed[part].mirrored != asset.parts[*part as usize].mirrored() {
+                triangle.swap(1, 2);
+            }
+        }
+        let mesh = Mesh { rest_m: Some(rest_m), hair_normals: None, ..mesh }.checked()?;
+        Ok(Self { skin: Skin { mesh, ..skin }, fields, singularities, notes })
+    }
+
+    /// Adds another skin with its hair, which nothing joins to this one.
+    pub fn append(&mut self, next: Self) {
+        let (mesh, other) = (&mut self.skin.mesh, next.skin.mesh);
+        let first = mesh.positions_m.len() as u32;
+        let own_rest = mesh.rest_m.take().unwrap_or_else(|| mesh.positions_m.clone());
+        let other_rest = other.rest_m.unwrap_or_else(|| other.positions_m.clone());
+        mesh.rest_m = Some([own_rest, other_rest].concat());
+        mesh.positions_m.extend(other.positions_m);
+        mesh.normals.extend(other.normals);
+        mesh.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + first)));
+        mesh.face_seeds.extend(other.face_seeds);
+        mesh.position_class.extend(other.position_class.iter().map(|c| c + first));
+        mesh.uv_sets.iter_mut().zip(other.uv_sets).for_each(|(own, other)| own.extend(other));
+        mesh.hair_normals = None;
+        self.skin.stored.extend(next.skin.stored);
+        self.skin.part_of.extend(next.skin.part_of);
+        let (fields, other) = (&mut self.fields, next.fields);
+        fields.length.extend(other.length);
+        fields.density.extend(other.density);
+        fields.direction.extend(other.direction);
+        fields.lean.extend(other.lean);
+        fields.clump.extend(other.clump);
+        fields.tint.extend(other.tint);
+        if let (Some(paint), Some(other)) = (&mut fields.paint, other.paint) {
+            let mut joined = Paint::clone(paint);
+            joined.part_of.extend(&other.part_of);
+            joined.factor.extend(&other.factor);
+            joined.longest.extend(&other.longest);
+            *paint = Arc::new(joined);
+        }
     }
 }
 
@@ -93,38 +185,67 @@ fn decode(maps: &preset::Maps) -> Result<Maps> {
     })
 }
 
-/// Hair colour per vertex: the asset's own; the preset's tint where it has none.
-fn tint(asset: &Asset, part: &Part, mesh: &Mesh, preset: &Preset) -> Result<Vec<Vec3>> {
-    let own = match preset.colour.from {
-        ColourSource::Preset => None,
-        ColourSource::Asset => own_colour(asset, part, mesh)?,
-    };
-    Ok(own.unwrap_or_else(|| vec![Vec3::from(preset.colour.tint); mesh.positions_m.len()]))
-}
+/// Where a preset's colour map stands in for a texture of the asset.
+pub const OF_PRESET: usize = usize::MAX;
 
-/// Skin colour per vertex of a part that no preset has a say in.
-pub(super) fn bare_colour(asset: &Asset, part: &Part, mesh: &Mesh) -> Result<Vec<Vec3>> {
-    Ok(own_colour(asset, part, mesh)?.unwrap_or_else(|| vec![Vec3::ONE; mesh.positions_m.len()]))
-}
-
-/// Base-colour texture, factor and vertex colours; none where the asset has none of them.
-fn own_colour(asset: &Asset, part: &Part, mesh: &Mesh) -> Result<Option<Vec<Vec3>>> {
-    let BaseColour { factor, texture } = &part.base_colour;
-    let image = match texture {
-        Some(texture) => asset.document.decode_image(texture.image)?.map(|image| (texture, image)),
-        None => None,
-    };
-    if image.is_none() && mesh.colour.is_none() && factor.truncate() == Vec3::ONE {
-        return Ok(None);
+/// What is painted on the parts: the asset's own colour or the preset's tint, and the preset's maps.
+fn paint(
+    asset: &Asset,
+    skin: &Skin,
+    bare: &impl Fn(usize) -> bool,
+    preset: &Preset,
+    maps: &Arc<Maps>,
+    notes: &mut Vec<String>,
+) -> Result<Paint> {
+    let mut images: HashMap<usize, Option<Arc<Image8>>> = HashMap::new();
+    let colour_map = maps.colour.clone().map(|image| (Texture::plain(OF_PRESET, OF_PRESET, 0), Arc::new(image)));
+    let mut parts = Vec::with_capacity(asset.parts.len());
+    let mut factors = Vec::with_capacity(asset.parts.len());
+    for (index, part) in asset.parts.iter().enumerate() {
+        let BaseColour { factor, texture } = &part.base_colour;
+        let texture = texture.clone().filter(|texture| texture.uv_set < part.stored.uv_sets.len());
+        let colour = match texture {
+            Some(texture) => {
+                if !images.contains_key(&texture.image) {
+                    images.insert(texture.image, asset.document.decode_image(texture.image)?.map(Arc::new));
+                }
+                images[&texture.image].clone().map(|image| (texture, image))
+            }
+            None => None,
+        };
+        let told = colour.is_some() || part.stored.colour.is_some() || factor.truncate() != Vec3::ONE;
+        let has_uv = !part.stored.uv_sets.is_empty();
+        // What is painted, the factor on it, and whether vertex colours are a factor too.
+        let (painted, factor, by_vertex) = if bare(index) {
+            // The renderer tints all skin by the preset's factor, which is not for bare skin.
+            let skin_factor = Vec3::from(preset.colour.skin).max(Vec3::splat(1e-6));
+            (Painted { colour, maps: None, bare: true }, factor.truncate() / skin_factor, true)
+        } else {
+            if !maps.is_empty() && !has_uv {
+                let name = &part.material_name;
+                notes.push(format!("material {name:?} has no texture coordinates: groom maps are left out"));
+            }
+            let maps = has_uv.then(|| maps.clone());
+            match colour_map.clone().filter(|_| has_uv) {
+                Some(map) => (Painted { colour: Some(map), maps, bare: false }, Vec3::ONE, false),
+                None if told && preset.colour.from == ColourSource::Asset => {
+                    (Painted { colour, maps, bare: false }, factor.truncate(), true)
+                }
+                None => (Painted { colour: None, maps, bare: false }, Vec3::from(preset.colour.tint), false),
+            }
+        };
+        factors.push((factor, by_vertex));
+        parts.push(painted);
     }
-    let vertex_colour = |v: usize| mesh.colour.as_ref().map_or(Vec4::ONE, |colour| colour[v]);
-    let texel = |v: usize| match &image {
-        Some((texture, image)) => match mesh.uv_sets.get(texture.uv_set) {
-            Some(uv) => texture.sample(image, uv[v]),
-            None => Vec4::ONE,
-        },
-        None => Vec4::ONE,
+    let colour = |v: usize| skin.mesh.colour.as_ref().map_or(Vec4::ONE, |colour| colour[v]).truncate();
+    let factor = |(v, &(part, _)): (usize, &(u32, u32))| {
+        let (factor, by_vertex) = factors[part as usize];
+        if by_vertex { factor * colour(v) } else { factor }
     };
-    let colour = |v: usize| (*factor * vertex_colour(v) * texel(v)).truncate().clamp(Vec3::ZERO, Vec3::ONE);
-    Ok(Some((0..mesh.positions_m.len()).map(colour).collect()))
+    Ok(Paint {
+        parts,
+        part_of: skin.stored.iter().map(|(part, _)| *part).collect(),
+        factor: skin.stored.iter().enumerate().map(factor).collect(),
+        longest: Vec::new(),
+    })
 }

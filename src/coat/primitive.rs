@@ -20,8 +20,16 @@ pub fn is_furred(fields: &Fields, triangle: [usize; 3]) -> bool {
     triangle.iter().any(|&v| fields.length[v] > SHORTEST && fields.density[v] > 0.0)
 }
 
-/// What a primitive carries, from its mesh, its fields and its patches. `local_offset` takes a skin vertex and a world
-/// offset in metres to the base primitive's own space; `axes` has the tile's x axis for each (see [`axes`](super::axes::axes)).
+/// How vectors of the world become those of the base primitive's own space at a skin vertex.
+pub struct Local<'a> {
+    /// An offset in metres.
+    pub offset: &'a dyn Fn(usize, Vec3) -> Vec3,
+    /// A unit normal.
+    pub normal: &'a dyn Fn(usize, Vec3) -> Vec3,
+}
+
+/// What a primitive carries, from its mesh, its fields and its patches. Base vertices are the mesh's. `axes` has the tile's x axis
+/// for each (see [`axes`](super::axes::axes)).
 pub fn coat_primitive(
     mesh: &Mesh,
     fields: &Fields,
@@ -29,7 +37,7 @@ pub fn coat_primitive(
     patches: &Patches,
     tile: &Tile,
     seed: u64,
-    local_offset: impl Fn(usize, Vec3) -> Vec3,
+    local: &Local<'_>,
 ) -> CoatPrimitive {
     let of = |v: &u32| *v as usize;
     let positions_m: Vec<Vec3> = patches.base_vertex.iter().map(|v| mesh.positions_m[of(v)]).collect();
@@ -38,18 +46,23 @@ pub fn coat_primitive(
     let triangles: Vec<[u32; 3]> = patches.triangles.iter().filter(furred).copied().collect();
     let surface = FinSurface { positions_m: &positions_m, position_class: &position_class, triangles: &triangles };
     let offset = |v: usize| offset_over_height(fields, v) * tile.height_m;
+    let normals = mesh.smooth_normals();
     CoatPrimitive {
         tile: 0,
         mesh: 0,
         primitive: 0,
         fins: edges(&surface, &tile.fin, seed),
-        offset: patches.base_vertex.iter().map(|v| local_offset(of(v), offset(of(v)))).collect(),
-        axis: patches.base_vertex.iter().map(|v| local_offset(of(v), axes[of(v)])).collect(),
+        offset: patches.base_vertex.iter().map(|v| (local.offset)(of(v), offset(of(v)))).collect(),
+        axis: patches.base_vertex.iter().map(|v| (local.offset)(of(v), axes[of(v)])).collect(),
+        normal: patches.base_vertex.iter().map(|v| (local.normal)(of(v), normals[of(v)])).collect(),
         tint: patches.base_vertex.iter().map(|v| fields.tint[of(v)].extend(fields.density[of(v)])).collect(),
         base_vertex: patches.base_vertex.clone(),
         uv: patches.uv.clone(),
         patch: patches.patch.clone(),
         triangles,
         blend: None,
+        colour: None,
+        painted: None,
+        longest: Vec::new(),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::image::Image8;
 use super::patches::Patches;
+use super::texture::Texture;
 use crate::math::{Vec2, Vec3, Vec4};
 
 /// Angles between ray and normal for which a gain is stored, degrees.
@@ -107,8 +108,17 @@ pub struct CoatPrimitive {
     /// The tile's x axis along the skin, in the base primitive's own space: a metre of the world in the rest pose. It is the
     /// same on both sides of a seam, however patches lie there; zero where it is the texture's own.
     pub axis: Vec<Vec3>,
+    /// Unit normal of the skin as hair stands on it, in the base primitive's own space: that of the surface across seams, not that
+    /// of shading. Empty in files of versions 1 and 2, where it is the base vertex's.
+    pub normal: Vec<Vec3>,
     /// Colour factor (linear RGB) and density factor.
     pub tint: Vec<Vec4>,
+    /// Colour at the root, beside the tint's: a texture of the file, over texture coordinates of the base vertices.
+    pub colour: Option<Texture>,
+    /// What is painted at the root: density in red, length in green.
+    pub painted: Option<Texture>,
+    /// Longest length that is painted around each vertex, which its offset has; empty where none is painted.
+    pub longest: Vec<f32>,
     /// Coat vertex indices, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Edges that may carry a fin.
@@ -165,6 +175,10 @@ impl CoatPrimitive {
             patch: old.iter().map(|&v| self.patch[v]).collect(),
             offset: old.iter().map(|&v| self.offset[v]).collect(),
             axis: old.iter().map(|&v| self.axis[v]).collect(),
+            normal: old.iter().filter_map(|&v| self.normal.get(v).copied()).collect(),
+            longest: old.iter().filter_map(|&v| self.longest.get(v).copied()).collect(),
+            colour: self.colour.clone(),
+            painted: self.painted.clone(),
             tint: old.iter().map(|&v| self.tint[v]).collect(),
             triangles: triangles.iter().map(|t| t.map(of)).collect(),
             fins: self.fins.iter().filter(whole).map(moved).collect(),

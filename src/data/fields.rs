@@ -1,11 +1,13 @@
 //! What varies over the skin: one value per vertex of a [`super::mesh::Mesh`].
 
+use super::paint::Paint;
 use crate::math::Vec3;
+use std::sync::Arc;
 
 /// The groom's fields on a mesh. All arrays have one entry per vertex.
 #[derive(Clone, Debug, Default)]
 pub struct Fields {
-    /// Hair length over the preset's, 0 for bare skin.
+    /// Hair length over the preset's, 0 for bare skin; with lengths painted, the longest around.
     pub length: Vec<f32>,
     /// Hair density over the preset's, 0 for bare skin.
     pub density: Vec<f32>,
@@ -18,4 +20,6 @@ pub struct Fields {
     pub clump: Vec<f32>,
     /// Hair colour under the root, linear RGB.
     pub tint: Vec<Vec3>,
+    /// What is painted between the vertices; none where nothing is, or vertices hold it.
+    pub paint: Option<Arc<Paint>>,
 }

@@ -1,10 +1,11 @@
 //! The skin that fur grows on.
 
+use super::spread::{LEAST_RISE, widest};
 use crate::error::{Error, Result};
 use crate::math::{DVec3, I64Vec3, Mat3, Vec2, Vec3, Vec4};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
-/// What the largest area counts when areas are summed in whole numbers: 2²³ triangles around a vertex still fit.
+/// What an angle of 1 rad counts when angles are summed in whole numbers: 2²¹ triangles around a vertex still fit.
 const WHOLE: f64 = (1_u64 << 40) as f64;
 
 /// A triangle mesh in metres, world axes (+Y up), relative to `origin_m`.
@@ -19,12 +20,17 @@ pub struct Mesh {
     /// Where the vertices are in the rest pose, m, where `positions_m` are in another: how many hairs there are and how
     /// they clump is decided there, so that every pose carries the same hair.
     pub rest_m: Option<Vec<Vec3>>,
-    /// Unit vertex normals.
+    /// Unit vertex normals as the asset shades its skin with: flat or split ones are no way for hair to stand.
     pub normals: Vec<Vec3>,
+    /// [`Self::smooth_normals`] of the surface that this mesh was cut out of; none where it is whole.
+    pub hair_normals: Option<Vec<Vec3>>,
     /// Vertex indices, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Which vertices are one point: the smallest index of a vertex at the same place, across UV and normal seams.
     pub position_class: Vec<u32>,
+    /// What all chance on a triangle is drawn from: made of where its corners lie, so that it does not hang on the order in a
+    /// file. Empty for triangles by their number.
+    pub face_seeds: Vec<u64>,
     /// Texture coordinate sets, in the asset's order.
     pub uv_sets: Vec<Vec<Vec2>>,
     /// `COLOR_0`, linear RGBA.
@@ -117,7 +123,7 @@ impl Mesh {
     /// The mesh in its rest pose.
     pub fn at_rest(&self) -> Self {
         let positions_m = self.rest_m.clone().unwrap_or_else(|| self.positions_m.clone());
-        Self { positions_m, rest_m: None, ..self.clone() }
+        Self { positions_m, rest_m: None, hair_normals: None, ..self.clone() }
     }
 
     /// Twice the area of triangle `t` times its unit normal, m².
@@ -131,27 +137,70 @@ impl Mesh {
         0.5 * self.area_vector_m2(t).length()
     }
 
-    /// Unit normals summed over the triangles around each vertex, weighted by area, one per vertex, shared across its
-    /// position class, so that what is extruded along them does not crack at seams.
+    /// What all chance on triangle `t` is drawn from.
+    pub fn face_seed(&self, t: usize) -> u64 {
+        self.face_seeds.get(t).copied().unwrap_or(t as u64)
+    }
+
+    /// Unit normals summed over the triangles around each vertex, weighted by the angle there, so that it does not matter how
+    /// a flat face is cut into triangles (Thürmer and Wüthrich 1998); one per vertex, shared across its position class, so that
+    /// what is extruded along them does not crack at seams.
     pub fn smooth_normals(&self) -> Vec<Vec3> {
-        let areas: Vec<DVec3> = (0..self.triangles.len()).map(|t| self.area_vector_m2(t).as_dvec3()).collect();
-        let largest = areas.iter().map(|a| a.abs().max_element()).fold(0.0, f64::max);
+        if let Some(normals) = &self.hair_normals {
+            return normals.clone();
+        }
         // Whole numbers add up to the same whatever the triangles' order.
-        let scale = if largest > 0.0 { WHOLE / largest } else { 0.0 };
         let mut sums = vec![I64Vec3::ZERO; self.positions_m.len()];
-        for (triangle, area) in self.triangles.iter().zip(areas) {
-            for &v in triangle {
-                sums[self.position_class[v as usize] as usize] += (area * scale).as_i64vec3();
+        for (t, triangle) in self.triangles.iter().enumerate() {
+            let corners = self.corners_m(t).map(Vec3::as_dvec3);
+            let Some(normal) = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize() else { continue };
+            for (k, &v) in triangle.iter().enumerate() {
+                let [a, b] = [corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]];
+                let angle = libm::atan2(a.cross(b).length(), a.dot(b));
+                sums[self.position_class[v as usize] as usize] += (normal * (angle * WHOLE)).as_i64vec3();
             }
         }
-        self.position_class
-            .iter()
-            .enumerate()
-            .map(|(v, &class)| {
-                let normal = sums[class as usize].as_dvec3().try_normalize();
-                normal.map_or(self.normals[v], |n| n.as_vec3())
+        let of = |(v, &class): (usize, &u32)| {
+            sums[class as usize].as_dvec3().try_normalize().map_or(self.normals[v], |normal| normal.as_vec3())
+        };
+        let mut normals: Vec<Vec3> = self.position_class.iter().enumerate().map(of).collect();
+        self.leave_every_face(&mut normals);
+        normals
+    }
+
+    /// Turns normals that do not stand on every face around their vertex to where they do, if they can.
+    fn leave_every_face(&self, normals: &mut [Vec3]) {
+        let mut hidden: BTreeMap<u32, Vec<Vec3>> = BTreeMap::new();
+        let corners = || {
+            self.triangles.iter().enumerate().flat_map(|(t, triangle)| {
+                let normal = self.area_vector_m2(t).normalize_or_zero();
+                triangle.map(|v| (self.position_class[v as usize], normal))
             })
-            .collect()
+        };
+        for (class, normal) in corners().filter(|(_, normal)| *normal != Vec3::ZERO) {
+            if normals[class as usize].dot(normal) < LEAST_RISE {
+                hidden.entry(class).or_default();
+            }
+        }
+        if hidden.is_empty() {
+            return;
+        }
+        for (class, normal) in corners().filter(|(_, normal)| *normal != Vec3::ZERO) {
+            if let Some(faces) = hidden.get_mut(&class) {
+                faces.push(normal);
+            }
+        }
+        let turned: BTreeMap<u32, Vec3> = hidden
+            .into_iter()
+            .map(|(class, mut faces)| {
+                // Sums do not add up to the same in another order.
+                faces.sort_unstable_by_key(|normal| normal.to_array().map(f32::to_bits));
+                (class, widest(&faces).0)
+            })
+            .collect();
+        for (normal, class) in normals.iter_mut().zip(&self.position_class) {
+            *normal = turned.get(class).copied().unwrap_or(*normal);
+        }
     }
 
     /// Length of the bounding box's diagonal, m; 0 for an empty mesh.

@@ -1,6 +1,6 @@
 //! What to draw and from where: posed, in metres, world axes, relative to one origin.
 
-use crate::asset::material::Wrap;
+use crate::data::texture::Wrap;
 use crate::data::coat::{FinEdge, Tile};
 use crate::data::film::Film;
 use crate::data::image::Image8;

@@ -68,7 +68,7 @@ pub(super) fn fur<'a>(posed: &Posed, coat_primitive: &'a CoatPrimitive) -> CoatM
     CoatMesh {
         tile: coat_primitive.tile,
         positions_m: at(&posed.positions_m),
-        normals: at(&posed.normals),
+        normals: if coat_primitive.normal.is_empty() { at(&posed.normals) } else { hair_normals(posed, coat_primitive) },
         offsets_m: turned(&coat_primitive.offset),
         axes: turned(&coat_primitive.axis),
         uv: Cow::from(&coat_primitive.uv),
@@ -77,6 +77,14 @@ pub(super) fn fur<'a>(posed: &Posed, coat_primitive: &'a CoatPrimitive) -> CoatM
         fins: Cow::from(&coat_primitive.fins),
         over_last: false,
     }
+}
+
+/// Normals of the skin as hair stands on it: they turn as normals do, by the inverse transpose.
+fn hair_normals(posed: &Posed, coat_primitive: &CoatPrimitive) -> Vec<Vec3> {
+    let turned = |(&v, &normal): (&u32, &Vec3)| {
+        (posed.world_from_offset[v as usize].inverse().transpose() * normal).normalize_or(posed.normals[v as usize])
+    };
+    coat_primitive.base_vertex.iter().zip(&coat_primitive.normal).map(turned).collect()
 }
 
 /// What a coat primitive is drawn as: once, or once per tile where it passes from one into another.

@@ -127,11 +127,12 @@ fn stack(
         attributes["COLOR_0"] = json!(document.push_vec4(&tints, Use::Vertices));
     }
     let indices_of: Vec<usize> = vertices().map(|(_, v)| base(v)).collect();
-    if part.skin.is_some() {
+    let stored_of: Vec<usize> = indices_of.iter().map(|&v| part.stored.source[v] as usize).collect();
+    if part.skins.iter().any(Option::is_some) {
         let primitive = asset.document.root().entry("meshes", part.mesh)?.entry("primitives", part.primitive)?;
         for (name, at) in primitive.need("attributes")?.members()? {
             if name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_") {
-                attributes[name] = json!(copy_elements(document, &asset.document, &at, &indices_of)?);
+                attributes[name] = json!(copy_elements(document, &asset.document, &at, &stored_of)?);
             }
         }
     }

@@ -3,6 +3,7 @@
 mod fallback;
 mod flatten;
 mod parts;
+mod pool;
 mod read;
 mod textures;
 mod write;
@@ -13,21 +14,6 @@ pub use read::{coat_of, read_coat};
 pub use write::{refuse_second, with_coat, write_coat};
 
 pub use super::extension::NAME;
-use crate::data::coat::{Coat, CoatPrimitive, Sampled};
 
-/// Newest version of the extension; all up to it are read.
-pub const VERSION: u64 = 2;
-
-/// The oldest version of the extension that can hold `coat`: 2 where a tile was sampled on the skin, or a primitive of the
-/// asset carries several.
-pub fn version_of(coat: &Coat) -> u64 {
-    let several = coat.primitives.windows(2).any(|two| owner(&two[0]) == owner(&two[1]));
-    let blended = coat.primitives.iter().any(|primitive| primitive.blend.is_some());
-    let on_skin = coat.tiles.iter().any(|tile| tile.sampled == Sampled::Skin);
-    if several || blended || on_skin { 2 } else { 1 }
-}
-
-/// The primitive of the asset that a coat primitive lies on.
-fn owner(primitive: &CoatPrimitive) -> (usize, usize) {
-    (primitive.mesh, primitive.primitive)
-}
+/// Newest version of the extension, which is written; all up to it are read.
+pub const VERSION: u64 = 3;

@@ -34,8 +34,17 @@ pub(super) fn check(primitive: &CoatPrimitive, part: &Part, tiles: &[Tile]) -> R
     if primitive.tile >= tiles.len() {
         return fault("tile", "a tile of the coat");
     }
-    if primitive.base_vertex.iter().any(|&v| v as usize >= part.vertices()) {
-        return fault("BASE_VERTEX", "vertices of the base primitive");
+    let inside = |v: &u32| (*v as usize) < n;
+    if !primitive.triangles.iter().flatten().all(inside) {
+        return fault("indices", "coat vertices");
+    }
+    let based = |v: &u32| (primitive.base_vertex[*v as usize] as usize) < part.vertices();
+    if !primitive.triangles.iter().flatten().all(based) {
+        return fault("BASE_VERTEX", "vertices that the base primitive's triangles use");
+    }
+    let optional = [primitive.normal.len(), primitive.longest.len()];
+    if optional.iter().any(|&length| length != 0 && length != n) {
+        return fault("NORMAL and LONGEST", "one entry per coat vertex, or none");
     }
     if let Some(Blend { tile, weight }) = &primitive.blend {
         let alike = |a: &Tile, b: &Tile| {
@@ -48,16 +57,14 @@ pub(super) fn check(primitive: &CoatPrimitive, part: &Part, tiles: &[Tile]) -> R
             return fault("blend.weights", "a number from 0 to 1 per coat vertex");
         }
     }
-    let inside = |v: &u32| (*v as usize) < n;
-    if !primitive.triangles.iter().flatten().all(inside) {
-        return fault("indices", "coat vertices");
-    }
     if !primitive.fins.iter().all(|fin| fin.ends.iter().chain(&fin.opposite).all(inside)) {
         return fault("fins.edges", "coat vertices");
     }
     let finite = primitive.uv.iter().all(|uv| uv.is_finite())
         && primitive.offset.iter().all(|o| o.is_finite())
         && primitive.axis.iter().all(|x| x.is_finite())
+        && primitive.normal.iter().all(|n| n.is_finite())
+        && primitive.longest.iter().all(|l| *l > 0.0 && l.is_finite())
         && primitive.tint.iter().all(|t| t.is_finite())
         && primitive.fins.iter().all(|f| f.u.iter().chain([&f.thickness]).all(|u| u.is_finite()));
     if finite { Ok(()) } else { fault("attributes", "finite numbers") }

@@ -3,7 +3,8 @@
 use super::parts::{check, part_of};
 use super::{NAME, VERSION, textures};
 use crate::asset::json::At;
-use crate::asset::{self, Asset};
+use crate::asset::material::texture_of;
+use crate::asset::{self, Asset, Part};
 use crate::data::coat::{Blend, Coat, CoatPrimitive, FinEdge};
 use crate::error::{Error, Result};
 use crate::math::{Vec2, Vec3, Vec4};
@@ -56,27 +57,42 @@ pub fn coat_of(asset: &Asset) -> Result<Coat> {
             let more = carried.list("more")?;
             for carried in std::iter::once(&carried).chain(&more) {
                 let mut coat_primitive = empty.clone();
-                read_primitive(asset, carried, &mut coat_primitive, part.mirrored())?;
+                read_primitive(asset, carried, &mut coat_primitive, part)?;
                 check(&coat_primitive, part, &coat.tiles)?;
-                coat.primitives.push(coat_primitive);
+                // Vertices of a pool that others use stay with them.
+                coat.primitives.push(coat_primitive.part(|_| true));
             }
         }
     }
     Ok(coat)
 }
 
-fn read_primitive(asset: &Asset, at: &At<'_>, coat_primitive: &mut CoatPrimitive, mirrored: bool) -> Result<()> {
+fn read_primitive(asset: &Asset, at: &At<'_>, coat_primitive: &mut CoatPrimitive, part: &Part) -> Result<()> {
     let document = &asset.document;
     let attributes = at.need("attributes")?;
     let integers = |owner: &At<'_>, key: &str, width| document.integers(owner.need(key)?.size()?, width);
     let floats = |owner: &At<'_>, key: &str, width| document.floats(owner.need(key)?.size()?, width);
     coat_primitive.tile = at.need("tile")?.size()?;
-    coat_primitive.base_vertex = integers(&attributes, "BASE_VERTEX", 1)?;
+    let mirrored = part.mirrored();
+    let source = &part.stored.source;
+    // A vertex that the primitive itself does not use may belong to another one of its pool.
+    let base = |stored: u32| source.binary_search(&stored).map_or(u32::MAX, |v| v as u32);
+    coat_primitive.base_vertex = integers(&attributes, "BASE_VERTEX", 1)?.into_iter().map(base).collect();
     coat_primitive.patch = integers(&attributes, "PATCH", 1)?;
     coat_primitive.uv = floats(&attributes, "TEXCOORD_0", 2)?.chunks_exact(2).map(Vec2::from_slice).collect();
     coat_primitive.offset = floats(&attributes, "OFFSET", 3)?.chunks_exact(3).map(Vec3::from_slice).collect();
     coat_primitive.axis = floats(&attributes, "AXIS", 3)?.chunks_exact(3).map(Vec3::from_slice).collect();
     coat_primitive.tint = floats(&attributes, "TINT", 4)?.chunks_exact(4).map(Vec4::from_slice).collect();
+    if attributes.get("NORMAL").is_some() {
+        let normals = floats(&attributes, "NORMAL", 3)?;
+        coat_primitive.normal = normals.chunks_exact(3).map(Vec3::from_slice).collect();
+    }
+    if attributes.get("LONGEST").is_some() {
+        coat_primitive.longest = floats(&attributes, "LONGEST", 1)?;
+    }
+    let texture = |key: &str| at.get(key).map(|slot| texture_of(document, &slot)).transpose().map(Option::flatten);
+    coat_primitive.colour = texture("colourTexture")?;
+    coat_primitive.painted = texture("paintedTexture")?;
     let indices = integers(at, "indices", 1)?;
     coat_primitive.triangles = indices.as_chunks::<3>().0.to_vec();
     if mirrored {

@@ -2,12 +2,14 @@
 
 use super::fallback::{self, Fallback};
 use super::parts::{check, part_of, set_extension};
-use super::{NAME, textures, version_of};
+use super::pool::pools;
+use super::{NAME, VERSION, textures};
 use crate::asset::document::Document;
 use crate::asset::encode::{Use, numbers};
 use crate::asset::image::media_type;
 use crate::asset::{Asset, write};
 use crate::data::coat::{Coat, CoatPrimitive};
+use crate::data::texture::Texture;
 use crate::error::{Error, Kind, Result};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -121,11 +123,19 @@ pub fn with_coat(asset: &Asset, coat: &Coat, fallback: Fallback) -> Result<Docum
     for tile in &coat.tiles {
         tiles.push(textures::write(&mut document, tile)?);
     }
-    let mut mirror = Vec::new();
     for primitive in &coat.primitives {
-        let part = part_of(asset, primitive)?;
-        check(primitive, part, &coat.tiles)?;
-        let value = write_primitive(&mut document, primitive, part.mirrored());
+        check(primitive, part_of(asset, primitive)?, &coat.tiles)?;
+    }
+    let mut vertices = vec![(Value::Null, Vec::new()); coat.primitives.len()];
+    for pool in pools(asset, &coat.primitives)? {
+        let attributes = write_vertices(&mut document, &pool.vertices);
+        for (index, numbers) in pool.members {
+            vertices[index] = (attributes.clone(), numbers);
+        }
+    }
+    let mut mirror = Vec::new();
+    for (primitive, vertices) in coat.primitives.iter().zip(vertices) {
+        let value = write_primitive(&mut document, primitive, vertices, part_of(asset, primitive)?.mirrored());
         let owner = &mut document.json["meshes"][primitive.mesh]["primitives"][primitive.primitive];
         match owner.get_mut("extensions").and_then(|e| e.get_mut(NAME)).and_then(Value::as_object_mut) {
             None => set_extension(owner, value),
@@ -147,13 +157,12 @@ pub fn with_coat(asset: &Asset, coat: &Coat, fallback: Fallback) -> Result<Docum
             json!({"preset": tile.preset, "edge": edges[0], "height": edges[1], "layers": tile.shells.layers})
         })
         .collect();
-    let version = version_of(coat);
     set_extension(
         &mut document.json,
-        json!({"version": version, "metresPerUnit": coat.metres_per_unit, "tiles": tiles}),
+        json!({"version": VERSION, "metresPerUnit": coat.metres_per_unit, "tiles": tiles}),
     );
     let extras =
-        json!({"version": version, "metresPerUnit": coat.metres_per_unit, "tiles": essentials, "primitives": mirror});
+        json!({"version": VERSION, "metresPerUnit": coat.metres_per_unit, "tiles": essentials, "primitives": mirror});
     if let Some(root) = document.json.as_object_mut() {
         let used = root.entry("extensionsUsed").or_insert_with(|| json!([]));
         if let Some(used) = used.as_array_mut() {
@@ -170,22 +179,61 @@ pub fn with_coat(asset: &Asset, coat: &Coat, fallback: Fallback) -> Result<Docum
     Ok(document)
 }
 
-/// Windings are written as the primitive's own space has them, which a mirroring node turns round again.
-fn write_primitive(document: &mut Document, primitive: &CoatPrimitive, mirrored: bool) -> Value {
+/// Accessors of coat vertices, by attribute.
+fn write_vertices(document: &mut Document, vertices: &CoatPrimitive) -> Value {
+    let mut attributes = json!({
+        "BASE_VERTEX": document.push_integers(&vertices.base_vertex, 1, Use::Other),
+        "TEXCOORD_0": document.push_vec2(&vertices.uv, Use::Other),
+        "PATCH": document.push_integers(&vertices.patch, 1, Use::Other),
+        "OFFSET": document.push_vec3(&vertices.offset, Use::Other),
+        "AXIS": document.push_vec3(&vertices.axis, Use::Other),
+        "TINT": document.push_vec4(&vertices.tint, Use::Other),
+    });
+    if !vertices.normal.is_empty() {
+        attributes["NORMAL"] = json!(document.push_vec3(&vertices.normal, Use::Other));
+    }
+    if !vertices.longest.is_empty() {
+        attributes["LONGEST"] = json!(document.push_floats(&vertices.longest, 1, Use::Other));
+    }
+    attributes
+}
+
+/// A texture of the file as glTF names it.
+fn texture_info(texture: &Texture) -> Value {
+    let mut info = json!({"index": texture.index, "texCoord": texture.uv_set});
+    let plain = Texture::plain(texture.index, texture.image, texture.uv_set);
+    if (texture.offset, texture.rotation_rad, texture.scale) != (plain.offset, plain.rotation_rad, plain.scale) {
+        info["extensions"] = json!({"KHR_texture_transform": {
+            "offset": numbers(&texture.offset.to_array()),
+            "rotation": f64::from(texture.rotation_rad),
+            "scale": numbers(&texture.scale.to_array()),
+        }});
+    }
+    info
+}
+
+/// Windings are written as the primitive's own space has them, which a mirroring node turns round again. `vertices` are its
+/// accessors and its vertices' numbers in them.
+fn write_primitive(
+    document: &mut Document,
+    primitive: &CoatPrimitive,
+    (attributes, numbers): (Value, Vec<u32>),
+    mirrored: bool,
+) -> Value {
+    let of = |v: u32| numbers[v as usize];
     let turned = |t: [u32; 3]| if mirrored { [t[0], t[2], t[1]] } else { t };
-    let indices: Vec<u32> = primitive.triangles.iter().flat_map(|&t| turned(t)).collect();
+    let indices: Vec<u32> = primitive.triangles.iter().flat_map(|&t| turned(t)).map(of).collect();
     let mut value = json!({
         "tile": primitive.tile,
         "indices": document.push_integers(&indices, 1, Use::Other),
-        "attributes": {
-            "BASE_VERTEX": document.push_integers(&primitive.base_vertex, 1, Use::Other),
-            "TEXCOORD_0": document.push_vec2(&primitive.uv, Use::Other),
-            "PATCH": document.push_integers(&primitive.patch, 1, Use::Other),
-            "OFFSET": document.push_vec3(&primitive.offset, Use::Other),
-            "AXIS": document.push_vec3(&primitive.axis, Use::Other),
-            "TINT": document.push_vec4(&primitive.tint, Use::Other),
-        },
+        "attributes": attributes,
     });
+    if let Some(colour) = &primitive.colour {
+        value["colourTexture"] = texture_info(colour);
+    }
+    if let Some(painted) = &primitive.painted {
+        value["paintedTexture"] = texture_info(painted);
+    }
     if let Some(blend) = &primitive.blend {
         value["blend"] = json!({"tile": blend.tile, "weights": document.push_floats(&blend.weight, 1, Use::Other)});
     }
@@ -193,7 +241,7 @@ fn write_primitive(document: &mut Document, primitive: &CoatPrimitive, mirrored:
         let edge = |fin: &crate::data::coat::FinEdge| {
             let [left, right] = fin.opposite;
             let opposite = if mirrored { [right, left] } else { [left, right] };
-            [fin.ends[0], fin.ends[1], opposite[0], opposite[1]]
+            [fin.ends[0], fin.ends[1], opposite[0], opposite[1]].map(of)
         };
         let edges: Vec<u32> = primitive.fins.iter().flat_map(edge).collect();
         let strips: Vec<f32> = primitive.fins.iter().flat_map(|fin| [fin.u[0], fin.u[1], fin.thickness]).collect();

@@ -109,6 +109,7 @@ impl Strip {
                 lean: vec![lean; 4],
                 clump: four(mix1(&fields.clump)),
                 tint: vec![Vec3::ONE; 4],
+                paint: None,
             },
             world_from_fin: Mat3::from_cols(x, y, rise),
             width_m,

@@ -34,14 +34,17 @@ pub fn edges(surface: &FinSurface<'_>, texture: &FinTexture, seed: u64) -> Vec<F
             faces.entry(key).or_default().push(([from, to], opposite, area_m2));
         }
     }
-    let fin = |(key, faces): (&[u32; 2], &Vec<Face>)| {
+    let fin = |faces: &Vec<Face>| {
         let (ends, opposite, _) = faces[0];
         let length_m = surface.positions_m[ends[0] as usize].distance(surface.positions_m[ends[1] as usize]);
         if length_m <= 0.0 {
             return None;
         }
         let area_m2 = faces.iter().map(|f| f.2).sum::<f32>() / 3.0;
-        let start = unit_f32(combine(combine(seed, u64::from(key[0])), u64::from(key[1])));
+        // By place, so that the order of vertices does not matter.
+        let mut places = ends.map(|v| surface.positions_m[v as usize].to_array().map(|x| (x + 0.0).to_bits()));
+        places.sort_unstable();
+        let start = unit_f32(places.as_flattened().iter().fold(seed, |key, &bits| combine(key, u64::from(bits))));
         Some(FinEdge {
             ends,
             opposite: [opposite, faces.get(1).map_or(opposite, |f| f.1)],
@@ -49,5 +52,5 @@ pub fn edges(surface: &FinSurface<'_>, texture: &FinTexture, seed: u64) -> Vec<F
             thickness: area_m2 / length_m / texture.thickness_m,
         })
     };
-    faces.iter().filter_map(fin).collect()
+    faces.values().filter_map(fin).collect()
 }

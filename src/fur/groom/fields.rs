@@ -1,44 +1,36 @@
-//! A coat's fields over a mesh: preset, vertex attributes and maps into one value per vertex.
+//! A coat's fields over a mesh: preset, vertex attributes and what is painted into one value per vertex.
 
 use super::Groom;
-use super::lean::lean;
-use super::maps::{Maps, sample, sample_colour};
+use super::lean::{Standing, lean};
 use super::unfold::unfold;
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
-use crate::math::{Vec2, Vec3};
+use crate::data::paint::{Paint, Painted, PaintedPoint};
+use crate::math::Vec3;
+use std::sync::Arc;
 
 /// Gathers the fields.
 ///
-/// `comb` is a unit tangent per vertex, zero where the hair stands upright; `tint` the colour under each vertex; `height_m` that
-/// of the hair that is combed so that it does not cross, m. Maps are sampled at the mesh's first UV set and left
-/// out where it has none.
-pub fn gather(mesh: &Mesh, groom: &Groom, maps: &Maps, comb: Vec<Vec3>, tint: Vec<Vec3>, height_m: f32) -> Fields {
+/// `comb` is a unit tangent per vertex, zero where the hair stands upright; `paint` what is painted on the mesh; `height_m` that of
+/// the hair that is combed so that it does not cross, m. Lengths are the longest that are painted around a vertex.
+pub fn gather(mesh: &Mesh, groom: &Groom, mut paint: Paint, comb: Vec<Vec3>, height_m: f32) -> Fields {
     let count = mesh.positions_m.len();
-    let normals = mesh.smooth_normals();
-    let at = |v: usize| mesh.uv_sets.first().map_or(Vec2::ZERO, |uv| uv[v]);
-    let has_uv = !mesh.uv_sets.is_empty();
-    let grey = |map: &Option<crate::data::image::Image8>, v: usize| match map {
-        Some(image) if has_uv => sample(image, at(v)).x,
-        _ => 1.0,
-    };
-    let comb_length = |v: usize| match &maps.comb {
-        Some(image) if has_uv => sample(image, at(v)).w,
-        _ => 1.0,
-    };
+    let standing = Standing::new(mesh);
+    paint.find_longest(mesh);
     let attribute = |v: usize| mesh.fur_length.as_ref().map_or(1.0, |length| length[v].max(0.0));
-    let mut length: Vec<f32> = (0..count).map(|v| attribute(v) * grey(&maps.length, v) * comb_length(v)).collect();
-    let mut lean: Vec<Vec3> = (0..count).map(|v| lean(groom, normals[v], comb[v])).collect();
-    unfold(mesh, &normals, height_m, &mut lean, &mut length);
+    let mut length: Vec<f32> = (0..count).map(|v| attribute(v) * paint.longest[v]).collect();
+    let class = |v: usize| mesh.position_class[v] as usize;
+    let mut lean: Vec<Vec3> =
+        (0..count).map(|v| standing.raised(v, class(v), lean(groom, standing.normals[v], comb[v]))).collect();
+    unfold(mesh, &standing, height_m, &mut lean, &mut length);
+    let painted: Vec<PaintedPoint> = (0..count).map(|v| paint.at_vertex(mesh, v)).collect();
     Fields {
         length,
         lean,
-        density: (0..count).map(|v| grey(&maps.density, v)).collect(),
-        clump: (0..count).map(|v| grey(&maps.clump, v)).collect(),
+        density: painted.iter().map(|p| p.density).collect(),
+        clump: painted.iter().map(|p| p.clump).collect(),
         direction: comb,
-        tint: match &maps.colour {
-            Some(image) if has_uv => (0..count).map(|v| sample_colour(image, at(v))).collect(),
-            _ => tint,
-        },
+        tint: painted.iter().map(|p| p.tint).collect(),
+        paint: paint.parts.iter().any(Painted::varies).then(|| Arc::new(paint)),
     }
 }

@@ -5,7 +5,7 @@ mod comb;
 pub mod fibre;
 pub mod fields;
 pub mod hair;
-mod lean;
+pub mod lean;
 pub mod maps;
 pub mod unfold;
 

@@ -3,7 +3,7 @@
 //! Hair in a hollow narrower than it is long runs into itself. Real hair gives way: leans are averaged with those around them
 //! until no prism of the shell turns inside out, and nowhere else. What cannot give way is as short as there is room.
 
-use super::lean::raised;
+use super::lean::Standing;
 use crate::data::mesh::Mesh;
 use crate::math::Vec3;
 use rayon::prelude::*;
@@ -34,8 +34,8 @@ struct SkinGraph<'a> {
 }
 
 /// Changes `lean`, and where that does not help `length`, so that hair `height_m` tall times its length does not cross.
-/// `normals` are the skin's smooth ones.
-pub fn unfold(mesh: &Mesh, normals: &[Vec3], height_m: f32, lean: &mut [Vec3], length: &mut [f32]) {
+/// `standing` is how hair may stand on the skin.
+pub fn unfold(mesh: &Mesh, standing: &Standing, height_m: f32, lean: &mut [Vec3], length: &mut [f32]) {
     let triangles: Vec<[u32; 3]> = mesh.triangles.iter().map(|t| t.map(|v| mesh.position_class[v as usize])).collect();
     let mut around = vec![Vec::new(); lean.len()];
     for &[a, b, c] in &triangles {
@@ -53,7 +53,7 @@ pub fn unfold(mesh: &Mesh, normals: &[Vec3], height_m: f32, lean: &mut [Vec3], l
         let average = |&v: &u32| {
             let (own, around) = (lean[v as usize], &skin.around[v as usize]);
             let mean = around.iter().map(|&near| lean[near as usize]).sum::<Vec3>() / around.len() as f32;
-            raised((own + mean).normalize_or(own), normals[v as usize])
+            standing.raised(v as usize, v as usize, (own + mean).normalize_or(own))
         };
         let averages: Vec<Vec3> = reached.par_iter().map(average).collect();
         reached.iter().zip(averages).for_each(|(&v, average)| lean[v as usize] = average);

@@ -3,6 +3,7 @@
 use super::{course, empty, individual};
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
+use crate::data::paint::Paint;
 use crate::data::strands::{Root, Strands};
 use crate::fur::groom::clump::{Around, ClumpGrid};
 use crate::fur::groom::fibre::Fibre;
@@ -13,7 +14,7 @@ use rayon::prelude::*;
 
 /// Grows one kind of hair on the whole mesh.
 ///
-/// Each triangle decides its own count and roots from its index, so order and threads do not matter. A posed mesh carries
+/// Each triangle decides its own count and roots from its seed, so order and threads do not matter. A posed mesh carries
 /// the hairs of its rest pose: as many, with the same ids, lengths and shapes.
 pub fn grow(fibre: &Fibre, mesh: &Mesh, fields: &Fields, seed: u64) -> Strands {
     let all: Vec<usize> = (0..mesh.triangles.len()).collect();
@@ -68,18 +69,35 @@ struct Field<'a> {
 impl Field<'_> {
     /// Where hairs grow on a triangle, and their keys.
     fn roots(&self, t: usize) -> impl Iterator<Item = (Vec3, u64)> {
-        let key = combine(self.seed, t as u64);
+        let key = combine(self.seed, self.mesh.face_seed(t));
         let corners = self.mesh.triangles[t].map(|v| v as usize);
         let (density, length) = (corners.map(|v| self.fields.density[v]), corners.map(|v| self.fields.length[v]));
-        let greatest = density.into_iter().fold(0.0, f32::max);
+        let painted = self.paint(t);
+        let greatest = if painted.is_some_and(|paint| paint.of(self.mesh, t).has_densities()) {
+            1.0
+        } else {
+            density.into_iter().fold(0.0, f32::max)
+        };
         let expected = self.fibre.density_per_m2 * self.mesh.rest_area_m2(t) * greatest;
         let count = (expected + unit_f32(key)).floor() as u64;
         (0..count).filter_map(move |i| {
             let key = combine(key, i);
             let b = sampling::square_to_triangle(sampling::r2(i, key & !0xFFFF));
-            let gone = unit_f32(combine(key, 2)) * greatest >= mix1(density, b) || mix1(length, b) <= 0.0;
+            let (density, share) = match painted {
+                Some(paint) => {
+                    let point = paint.at(self.mesh, t, b);
+                    (point.density, paint.share_of_longest(self.mesh, t, b, &point))
+                }
+                None => (mix1(density, b), 1.0),
+            };
+            let gone = unit_f32(combine(key, 2)) * greatest >= density || mix1(length, b) * share <= 0.0;
             (!gone).then_some((b, key))
         })
+    }
+
+    /// What is painted on a triangle; none where its corners say all.
+    fn paint(&self, t: usize) -> Option<&Paint> {
+        self.fields.paint.as_deref().filter(|paint| paint.of(self.mesh, t).varies())
     }
 
     fn grow(&self, group: &[usize], plot: Plot<'_>, points_per_strand: usize) {
@@ -92,7 +110,7 @@ impl Field<'_> {
                 _ => ground.insert(Ground::new(self, t)),
             };
             *root = Root { triangle: t as u32, barycentric: [b.x, b.y] };
-            *tint = here.hair(self.fibre, b, key, points_m);
+            *tint = here.hair(self, b, key, points_m);
         }
     }
 }
@@ -133,22 +151,43 @@ impl Ground {
     }
 
     /// Grows a hair; returns its colour.
-    fn hair(&self, fibre: &Fibre, b: Vec3, key: u64, points_m: &mut [Vec3]) -> Vec3 {
+    fn hair(&self, field: &Field<'_>, b: Vec3, key: u64, points_m: &mut [Vec3]) -> Vec3 {
+        let fibre = field.fibre;
         let root_m = mix3(self.corners_m, b);
         let normal = mix3(self.normals, b).normalize_or(Vec3::Z);
-        let lean = mix3(self.lean, b).normalize_or(normal);
-        let x_axis = tangent(mix3(self.direction, b), normal);
+        let mut lean = mix3(self.lean, b).normalize_or(normal);
+        let mut direction = mix3(self.direction, b);
+        let (mut tint, mut length, mut clump) = (mix3(self.tint, b), mix1(self.length, b), mix1(self.clump, b));
+        if let Some(paint) = field.paint(self.t) {
+            let point = paint.at(field.mesh, self.t, b);
+            (tint, clump) = (point.tint, point.clump);
+            length *= paint.share_of_longest(field.mesh, self.t, b, &point);
+            let combed = paint.comb(field.mesh, self.t, b).reject_from(normal).normalize_or_zero();
+            let from = direction.reject_from(normal).normalize_or_zero();
+            if combed != Vec3::ZERO && from != Vec3::ZERO {
+                lean = turned(lean, normal, from, combed);
+                direction = combed;
+            }
+        }
+        let x_axis = tangent(direction, normal);
         let y_axis = normal.cross(x_axis);
         let to_clump = self.posed_from_rest * self.centres.to_centre_m(mix3(self.rest_m, b));
         let to_clump = Vec2::new(to_clump.dot(x_axis), to_clump.dot(y_axis));
-        let (length_m, brightness) = individual(fibre, fibre.length_m * mix1(self.length, b), key);
-        course(fibre, length_m, mix1(self.clump, b), to_clump, key, points_m);
+        let (length_m, brightness) = individual(fibre, fibre.length_m * length, key);
+        course(fibre, length_m, clump, to_clump, key, points_m);
         // Shell space to the world: sheared along the lean, as the coat's offsets shear a tile.
         for p in points_m {
             *p = root_m + x_axis * p.x + y_axis * p.y + lean * p.z;
         }
-        mix3(self.tint, b) * brightness
+        tint * brightness
     }
+}
+
+/// `lean` turned around the unit `normal` as far as from one unit tangent to another.
+fn turned(lean: Vec3, normal: Vec3, from: Vec3, to: Vec3) -> Vec3 {
+    let (cos, sin) = (from.dot(to), normal.dot(from.cross(to)));
+    let flat = lean.reject_from_normalized(normal);
+    lean - flat + flat * cos + normal.cross(flat) * sin
 }
 
 fn mix3(values: [Vec3; 3], b: Vec3) -> Vec3 {

@@ -2,7 +2,7 @@
 
 use super::layout::{CoatVertex, FinInstance, Mip, SkinVertex, TileUniform, medium_unit_per_m};
 use super::pipelines::Layouts;
-use crate::asset::material::Wrap;
+use crate::data::texture::Wrap;
 use crate::data::coat::{FinTexture, Sampled, ShellStack, Tile};
 use crate::data::image::Image8;
 use crate::data::shell::{signed, unorm};

@@ -3,7 +3,7 @@
 use super::CoveredPart;
 use super::colours::DISTINCT;
 use super::shapes::Shapes;
-use crate::asset::material::Wrap;
+use crate::data::texture::Wrap;
 use crate::data::coat::Coat;
 use crate::data::image::Image8;
 use crate::error::Result;
