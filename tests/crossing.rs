@@ -2,6 +2,7 @@
 
 use crate::scenes;
 use furrier::data::mesh::Mesh;
+use furrier::fur::groom::lean::Standing;
 use furrier::fur::groom::unfold::unfold;
 use furrier::math::Vec3;
 use furrier::volume::shell::prism::{Prism, ShellPoint};
@@ -40,7 +41,7 @@ fn hair_in_a_crease_is_combed_apart() {
         let normals = mesh.smooth_normals();
         let (mut lean, mut length) = (normals.clone(), vec![1.0; normals.len()]);
         assert!(turned(&mesh, &lean, &length) > 10, "{degrees}: nothing to comb");
-        unfold(&mesh, &normals, HEIGHT_M, &mut lean, &mut length);
+        unfold(&mesh, &Standing::new(&mesh), HEIGHT_M, &mut lean, &mut length);
         assert_eq!(turned(&mesh, &lean, &length), 0, "{degrees}");
         let shortest = length.iter().copied().fold(1.0, f32::min);
         assert!(shortest > least, "{degrees}: {shortest}");
@@ -56,7 +57,7 @@ fn hair_that_does_not_cross_is_left_alone() {
     let mesh = scenes::bent_skin(1);
     let normals = mesh.smooth_normals();
     let (mut lean, mut length) = (normals.clone(), vec![1.0; normals.len()]);
-    unfold(&mesh, &normals, HEIGHT_M, &mut lean, &mut length);
+    unfold(&mesh, &Standing::new(&mesh), HEIGHT_M, &mut lean, &mut length);
     assert!(lean == normals && length.iter().all(|&l| l == 1.0));
 }
 

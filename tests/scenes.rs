@@ -36,6 +36,7 @@ impl Grown {
             lean,
             clump: vec![1.0; n],
             tint: vec![Vec3::from(Colour::default().tint); n],
+            paint: None,
         };
         let colour = Colour::default();
         let guard_fibre = Fibre::guard(guard, &colour, 1.0);

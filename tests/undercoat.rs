@@ -123,6 +123,7 @@ pub fn on_level_skin<T>(hairs: &Cylinders, with: impl FnOnce(&Scene<'_>) -> T) -
         lean: vec![hairs.lean.as_vec3(); n],
         clump: vec![0.0; n],
         tint: vec![Vec3::ONE; n],
+        paint: None,
     };
     let fibre = fibre(hairs);
     with(&Scene {

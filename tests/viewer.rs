@@ -29,7 +29,7 @@ fn dressed(asset: &Asset, tile: Tile) -> Coat {
             tint: vec![Vec4::ONE; count],
             triangles: part.stored.triangles.clone(),
             fins: vec![],
-            blend: None,
+            ..CoatPrimitive::default()
         });
     }
     coat.tiles.push(tile);

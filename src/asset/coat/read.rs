@@ -59,12 +59,20 @@ pub fn coat_of(asset: &Asset) -> Result<Coat> {
                 let mut coat_primitive = empty.clone();
                 read_primitive(asset, carried, &mut coat_primitive, part)?;
                 check(&coat_primitive, part, &coat.tiles)?;
-                // Vertices of a pool that others use stay with them.
-                coat.primitives.push(coat_primitive.part(|_| true));
+                coat.primitives.push(own_vertices(coat_primitive));
             }
         }
     }
     Ok(coat)
+}
+
+/// A coat primitive without the vertices of a pool that others use.
+fn own_vertices(coat_primitive: CoatPrimitive) -> CoatPrimitive {
+    let mut used = vec![false; coat_primitive.base_vertex.len()];
+    coat_primitive.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+    let based = |v: &u32| *v != u32::MAX;
+    let whole = used.iter().zip(&coat_primitive.base_vertex).all(|(used, base)| *used || based(base));
+    if whole { coat_primitive } else { coat_primitive.part(|_| true) }
 }
 
 fn read_primitive(asset: &Asset, at: &At<'_>, coat_primitive: &mut CoatPrimitive, part: &Part) -> Result<()> {
