@@ -3,7 +3,7 @@
 #import furrier::light::light_at
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
 #import furrier::constants::{INVISIBLE, LEAST_CLEAR, LEAST_COSINE}
-#import furrier::coat::{CoatVertex, depth_of_opacity, presence}
+#import furrier::coat::{CoatVertex, Paint, Root, root_of, depth_of_opacity, presence}
 
 // Texels along the edge per texel along the hair that one fetch may average.
 const MAX_STRETCH: f32 = 4.0;
@@ -19,6 +19,11 @@ struct FinEdge {
 
 @group(2) @binding(0) var<storage, read> vertices: array<CoatVertex>;
 @group(2) @binding(1) var<storage, read> fins: array<FinEdge>;
+@group(2) @binding(2) var<uniform> paint: Paint;
+@group(2) @binding(3) var colour_sampler: sampler;
+@group(2) @binding(4) var colour_texture: texture_2d_array<f32>;
+@group(2) @binding(5) var painted_sampler: sampler;
+@group(2) @binding(6) var painted_texture: texture_2d_array<f32>;
 @group(3) @binding(0) var fin_sampler: sampler;
 @group(3) @binding(1) var fin_albedo: texture_2d_array<f32>;
 @group(3) @binding(2) var fin_tangent: texture_2d_array<f32>;
@@ -34,6 +39,8 @@ struct Varyings {
     @location(6) @interpolate(flat) across: vec3<f32>,
     // Optical depth over the texture's.
     @location(7) @interpolate(flat) weight: f32,
+    @location(8) root: vec4<f32>,
+    @location(9) longest: f32,
 }
 
 @vertex
@@ -64,6 +71,8 @@ fn vertex(@builtin(vertex_index) index: u32) -> Varyings {
     out.offset_m = own.offset_m;
     out.normal = own.normal;
     out.tint = own.tint;
+    out.root = own.root;
+    out.longest = own.longest;
     out.along = normalize(edge + vec3(0.0, 0.0, 1e-20));
     out.across = across / max(size, 1e-20);
     // A slab of hair seen aslant is as much thicker.
@@ -81,13 +90,30 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     // Where fins stand close, a pixel spans many texels along the edge and few along the hair. A mip that holds the former
     // would mix roots and tips, so no more of the width counts than a sampler can take apart.
     let size = vec2<f32>(textureDimensions(fin_albedo).xy);
-    let uv_dx = dpdx(in.uv);
-    let uv_dy = dpdy(in.uv);
+    let root_dx = dpdx(in.root);
+    let root_dy = dpdy(in.root);
+    var root = Root(1.0, 1.0);
+    if paint.has_painted > 0u {
+        root = root_of(textureSampleGrad(painted_texture, painted_sampler, in.root.zw, 0, root_dx.zw, root_dy.zw), in.longest);
+    }
+    var tint = in.tint;
+    if paint.has_colour > 0u {
+        tint = vec4(tint.rgb * textureSampleGrad(colour_texture, colour_sampler, in.root.xy, 0, root_dx.xy, root_dy.xy).rgb, tint.w);
+    }
+    // Shorter hair ends lower: the texture is squeezed to it.
+    let squeeze = 1.0 / max(root.share, 1e-6);
+    let uv = vec2(in.uv.x, 1.0 - (1.0 - in.uv.y) * squeeze);
+    let uv_dx = dpdx(in.uv) * vec2(1.0, squeeze);
+    let uv_dy = dpdy(in.uv) * vec2(1.0, squeeze);
+    let offset_m = in.offset_m * root.share;
     let texels = vec2(length(vec2(uv_dx.x, uv_dy.x)), length(vec2(uv_dx.y, uv_dy.y))) * size;
     let narrowed = vec2(min(1.0, MAX_STRETCH * max(texels.y, 1.0) / max(texels.x, 1e-6)), 1.0);
-    let surface = textureSampleGrad(fin_albedo, fin_sampler, in.uv, 0, uv_dx * narrowed, uv_dy * narrowed);
-    let medium = textureSampleGrad(fin_tangent, fin_sampler, in.uv, 0, uv_dx * narrowed, uv_dy * narrowed);
-    let present = in.tint.w * presence(in.offset_m);
+    let surface = textureSampleGrad(fin_albedo, fin_sampler, uv, 0, uv_dx * narrowed, uv_dy * narrowed);
+    let medium = textureSampleGrad(fin_tangent, fin_sampler, uv, 0, uv_dx * narrowed, uv_dy * narrowed);
+    if uv.y < 0.0 {
+        discard;
+    }
+    let present = tint.w * root.density * presence(offset_m);
     let depth = depth_of_opacity(surface.a) * in.weight * present;
     let opacity = 1.0 - exp(-depth);
     if opacity < INVISIBLE {
@@ -100,7 +126,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let tangent = normalize(stored.x * in.along + stored.y * in.across + stored.z * up + up * 1e-6) * agreement;
     let world_ray = ray_direction(in.position_m);
     let normal = normalize(in.normal);
-    let hair = Hair(surface.rgb * in.tint.rgb, tangent, normal, -world_ray);
+    let hair = Hair(surface.rgb * tint.rgb, tangent, normal, -world_ray);
     let outside_depth = -log(max(medium.a, LEAST_CLEAR)) * present;
     var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
     for (var i = 0u; i < view.light_count; i++) {

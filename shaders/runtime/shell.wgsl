@@ -4,7 +4,7 @@
 #import furrier::light::light_at
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
 #import furrier::constants::{DEEPEST_HAIR, INVISIBLE, LEAST_CLEAR, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
-#import furrier::coat::{CoatVertex, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
+#import furrier::coat::{CoatVertex, Paint, Root, root_of, filled_slab, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
     lateral, shadow_slant, depth_of_opacity, presence, path_through_slab, footprint, fetch, run_through_slab, gain, medium_of, fin_share}
 
 // Which side of the shells this pass draws: the far one first, outer to inner, then the near one, inner to outer.
@@ -16,6 +16,11 @@ const FAR_TAPS: f32 = 4.0;
 
 @group(2) @binding(0) var<storage, read> vertices: array<CoatVertex>;
 @group(2) @binding(1) var<storage, read> indices: array<u32>;
+@group(2) @binding(2) var<uniform> paint: Paint;
+@group(2) @binding(3) var colour_sampler: sampler;
+@group(2) @binding(4) var colour_texture: texture_2d_array<f32>;
+@group(2) @binding(5) var painted_sampler: sampler;
+@group(2) @binding(6) var painted_texture: texture_2d_array<f32>;
 
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
@@ -34,6 +39,8 @@ struct Varyings {
     @location(10) axis: vec3<f32>,
     // Square root of the triangle's area at this height over that on the skin.
     @location(11) @interpolate(flat) spread: f32,
+    @location(12) root: vec4<f32>,
+    @location(13) longest: f32,
 }
 
 @vertex
@@ -59,7 +66,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
     out.uv = vec2(own.u, own.v);
     out.offset_m = own.offset_m;
     out.normal = own.normal;
-    out.tint = mix(vec4(1.0), own.tint, tile.tinted);
+    out.tint = own.tint;
     out.x_axis = (edge_b * uv_c.y - edge_c * uv_b.y) * scale;
     out.y_axis = (edge_c * uv_b.x - edge_b * uv_c.x) * scale;
     let turn_b = b.normal - a.normal;
@@ -67,6 +74,8 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
     out.x_turn = (turn_b * uv_c.y - turn_c * uv_b.y) * scale;
     out.y_turn = (turn_c * uv_b.x - turn_b * uv_c.x) * scale;
     out.layer = layer;
+    out.root = own.root;
+    out.longest = own.longest;
     out.axis = own.axis;
     let foot = cross(b.position_m - a.position_m, c.position_m - a.position_m);
     out.spread = clamp(sqrt(length(cross(edge_b, edge_c)) / max(length(foot), 1e-30)), 1.0 / MOST_SPREAD, MOST_SPREAD);
@@ -87,11 +96,28 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let uv_dx = dpdx(in.uv);
     let uv_dy = dpdy(in.uv);
+    let root_dx = dpdx(in.root);
+    let root_dy = dpdy(in.root);
+    // What is painted where the hair has its root: below, along the offset. Texels that were sampled on the skin hold it.
+    var root = Root(1.0, 1.0);
+    if paint.has_painted > 0u && tile.tinted > 0.5 {
+        root = root_of(textureSampleGrad(painted_texture, painted_sampler, in.root.zw, 0, root_dx.zw, root_dy.zw), in.longest);
+    }
+    let slab = filled_slab(in.layer, root.share);
+    if slab.slabs <= 0.0 {
+        discard;
+    }
+    var tint = in.tint;
+    if paint.has_colour > 0u && tile.tinted > 0.5 {
+        tint = vec4(tint.rgb * textureSampleGrad(colour_texture, colour_sampler, in.root.xy, 0, root_dx.xy, root_dy.xy).rgb, tint.w);
+    }
+    tint = mix(vec4(1.0), vec4(tint.rgb, tint.w * root.density), tile.tinted);
+    let offset_m = in.offset_m * root.share;
     let normal = normalize(in.normal);
     // Axes in the plane of the smooth normal, or facets would show.
     let x_axis = in.x_axis - normal * dot(normal, in.x_axis);
     let y_axis = in.y_axis - normal * dot(normal, in.y_axis);
-    let up = in.offset_m / tile.height_m;
+    let up = offset_m / tile.height_m;
     let texture = frame(x_axis, y_axis, up);
     var at = texture;
     if tile.tinted > 0.5 {
@@ -101,19 +127,18 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let ray = ray_in_tile(at, world_ray);
     // The same ray as the texture is fetched along it.
     let sweep = Ray(vec3((texture.tile_from_world * world_ray).xy, ray.direction.z), ray.cosine, ray.fall);
-    let slab_m = tile.height_m / f32(tile.layers - 1u);
 
     // The surface bends away from the ray by half its normal curvature along it, measured in metres of the tile.
     let sideways = x_axis * sweep.direction.x + y_axis * sweep.direction.y;
     let turn = in.x_turn * sweep.direction.x + in.y_turn * sweep.direction.y;
     let bend_per_m = 0.5 * dot(turn, sideways) / max(dot(normal, at.world_from_tile[2]), LEAST_RISE);
-    let path_m = path_through_slab(ray, slab_m, bend_per_m);
+    let path_m = path_through_slab(ray, slab.slab_m, bend_per_m);
     let inwards = select(-0.5, 0.5, NEAR_SIDE) * path_m;
     let uv = in.uv + inwards * sweep.direction.xy / tile.edge_m;
 
-    let run = run_through_slab(sweep, path_m, slab_m, slopes[in.layer]);
+    let run = run_through_slab(sweep, path_m, slab.slab_m, slopes[slab.layer]);
     let spot = footprint(uv_dx, uv_dy, run, select(FAR_TAPS, MOST_TAPS, NEAR_SIDE));
-    let layer = i32(in.layer);
+    let layer = slab.layer;
     let medium = medium_of(fetch(medium_texture, uv, layer, spot));
     // Ends count where the run is short, and colour varies little from hair to hair: one tap each.
     let ends = textureSampleLevel(ends_texture, hair_sampler, uv, layer, spot.round_level).r;
@@ -124,10 +149,10 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 
     // τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], model e of docs/steps/shells.md; g by the pixel's own mip.
     let through = path_m * lateral(at, world_ray, medium);
-    let of_ends = depth_of_opacity(ends) * min(1.0, path_m * ray.fall / slab_m);
+    let of_ends = slab.slabs * depth_of_opacity(ends) * min(1.0, path_m * ray.fall / slab.slab_m);
     let gained = gain(footprint(uv_dx, uv_dy, vec2(0.0), MOST_TAPS).level, ray.cosine);
     let kept = select(1.0, 1.0 - fin_share(dot(normal, world_ray)), WITH_FINS);
-    let present = in.tint.w * presence(in.offset_m);
+    let present = tint.w * presence(offset_m);
     let depth = gained * (through + of_ends) * present * kept;
     let opacity = 1.0 - exp(-depth);
     if opacity < INVISIBLE {
@@ -137,7 +162,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     // m, where there is enough hair for eight bits to tell; its length says how far the hairs agree.
     let agreement = min(length(medium.tangent) / max(medium.extinction, LEAST_EXTINCTION), 1.0);
     let tangent = normalize(at.world_from_tile * (medium.tangent + vec3(0.0, 0.0, LEAST_EXTINCTION))) * agreement;
-    let hair = Hair(surface.rgb * in.tint.rgb, tangent, normal, -world_ray);
+    let hair = Hair(surface.rgb * tint.rgb, tangent, normal, -world_ray);
     let outside_depth = min(-log(max(surface.a, LEAST_CLEAR)), DEEPEST_HAIR) * present;
     var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
     for (var i = 0u; i < view.light_count; i++) {

@@ -2,11 +2,13 @@
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
 #import furrier::shading::skin_radiance
-#import furrier::constants::{LEAST_CLEAR, LEAST_COSINE}
+#import furrier::constants::{FADE_BELOW, LEAST_CLEAR, LEAST_COSINE}
 #import furrier::coat::{hair_sampler, albedo_texture}
 
 @group(2) @binding(0) var base_sampler: sampler;
 @group(2) @binding(1) var base_texture: texture_2d_array<f32>;
+@group(2) @binding(2) var painted_sampler: sampler;
+@group(2) @binding(3) var painted_texture: texture_2d_array<f32>;
 
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
@@ -16,6 +18,7 @@ struct Varyings {
     @location(3) uv: vec2<f32>,
     @location(4) coat_uv: vec2<f32>,
     @location(5) coat_density: f32,
+    @location(6) painted_uv: vec2<f32>,
 }
 
 @vertex
@@ -26,9 +29,10 @@ fn vertex(
     @location(3) uv: vec2<f32>,
     @location(4) coat_uv: vec2<f32>,
     @location(5) coat_density: f32,
+    @location(6) painted_uv: vec2<f32>,
 ) -> Varyings {
     let clip = view.clip_from_world * vec4(position_m, 1.0);
-    return Varyings(clip, position_m, normal, colour, uv, coat_uv, coat_density);
+    return Varyings(clip, position_m, normal, colour, uv, coat_uv, coat_density, painted_uv);
 }
 
 // Skin that is seen lies at a border or in a parting, where light finds the way that the eye found.
@@ -38,14 +42,16 @@ const DEEPEST_SKIN: f32 = 1.5;
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     // Layer 0 of the tile: colour factor of the skin under hair, and how much light comes through.
     let cover = textureSample(albedo_texture, hair_sampler, in.coat_uv, 0);
-    let furred = in.coat_density > 0.0;
+    // Density in red, length in green; white where nothing is painted.
+    let painted = textureSample(painted_texture, painted_sampler, in.painted_uv, 0);
+    let furred = smoothstep(0.0, FADE_BELOW, painted.g) * select(0.0, 1.0, in.coat_density > 0.0);
     let base = in.colour * textureSample(base_texture, base_sampler, in.uv, 0).rgb;
-    let albedo = base * select(vec3(1.0), cover.rgb, furred);
+    let albedo = base * mix(vec3(1.0), cover.rgb, furred);
     let world_ray = ray_direction(in.position_m);
     let turned = normalize(in.normal);
     let normal = select(turned, -turned, dot(turned, world_ray) > 0.0);
-    let outside_depth = min(-log(max(cover.a, LEAST_CLEAR)) * in.coat_density, DEEPEST_SKIN);
-    let gloss = select(1.0, 0.0, furred);
+    let outside_depth = min(-log(max(cover.a, LEAST_CLEAR)) * in.coat_density * painted.r * furred, DEEPEST_SKIN);
+    let gloss = 1.0 - furred;
 
     var radiance = albedo * view.ambient * exp(-outside_depth);
     for (var i = 0u; i < view.light_count; i++) {

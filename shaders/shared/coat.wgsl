@@ -32,10 +32,20 @@ struct CoatVertex {
     offset_m: vec3<f32>,
     v: f32,
     normal: vec3<f32>,
+    // Longest length painted around it.
+    longest: f32,
     // The tile's x axis on the skin, of any length; 0 where it is the texture's own.
     axis: vec3<f32>,
     // Colour factor and density factor.
     tint: vec4<f32>,
+    // Where textures of the root are read: of colour in xy, of what is painted in zw.
+    root: vec4<f32>,
+}
+
+// Which textures of the root there are, 0 or 1 each.
+struct Paint {
+    has_colour: u32,
+    has_painted: u32,
 }
 
 @group(1) @binding(0) var<uniform> tile: Tile;
@@ -131,6 +141,36 @@ fn shadow_slant(at: Frame, to_light: vec3<f32>, medium: Medium) -> f32 {
 // Optical depth of an opacity: κ of the filtered 1 - e^-κ, and that of a fin.
 fn depth_of_opacity(ends: f32) -> f32 {
     return -log(max(1.0 - ends, LEAST_CLEAR));
+}
+
+// What a texel says of the hair that has its root there.
+struct Root {
+    // Factor on density.
+    density: f32,
+    // Length over that of the offset, in [0, 1].
+    share: f32,
+}
+
+fn root_of(painted: vec4<f32>, longest: f32) -> Root {
+    return Root(painted.r, clamp(painted.g / longest, 0.0, 1.0));
+}
+
+// What of a slab hair fills that is shorter than the offset: the tile is squeezed to `share` of the stack, and ends there.
+struct Filled {
+    // Layer of the tile in the middle of what is filled.
+    layer: i32,
+    // Thickness of what is filled, in metres of the squeezed tile.
+    slab_m: f32,
+    // Slabs of the tile in it.
+    slabs: f32,
+}
+
+fn filled_slab(layer: u32, share: f32) -> Filled {
+    let slabs = f32(tile.layers - 1u);
+    let bottom = f32(layer) - 1.0;
+    let filled = clamp(share * slabs - bottom, 0.0, 1.0) / max(share, 1e-6);
+    let middle = bottom / max(share, 1e-6) + 0.5 * filled;
+    return Filled(i32(clamp(floor(middle) + 1.0, 1.0, slabs)), filled * tile.height_m / slabs, filled);
 }
 
 // How much of hair with this offset is there: skin without hair has offsets of length 0, and the last hundredth fades.

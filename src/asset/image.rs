@@ -3,7 +3,7 @@
 use super::document::Document;
 use super::uri;
 use crate::data::image::Image8;
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use image::{ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
 use std::path::Path;
@@ -127,4 +127,17 @@ pub fn media_type(bytes: &[u8]) -> Option<&'static str> {
         ImageFormat::Jpeg => "image/jpeg",
         _ => "image/webp",
     })
+}
+
+/// An RGBA image as PNG.
+///
+/// # Errors
+/// When it cannot be encoded.
+pub fn png(image: &Image8) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let encoder = ::image::codecs::png::PngEncoder::new(&mut bytes);
+    let colour = ::image::ExtendedColorType::Rgba8;
+    ::image::ImageEncoder::write_image(encoder, &image.pixels, image.width, image.height, colour)
+        .map_err(|error| Error::new(Kind::Output, format!("a texture cannot be written as PNG: {error}")))?;
+    Ok(bytes)
 }

@@ -57,33 +57,31 @@ impl BaseColour {
 /// # Errors
 /// Names what it points to that is not there.
 pub fn texture_of(document: &Document, slot: &At<'_>) -> Result<Option<Texture>> {
-        let root = document.root();
-        let texture = root.entry("textures", slot.need("index")?.size()?)?;
-        let webp = texture.get("extensions").and_then(|e| e.get("EXT_texture_webp")?.get("source"));
-        let Some(source) = webp.or_else(|| texture.get("source")) else { return Ok(None) };
-        let image = source.index_into("images", document.count("images"))?;
-        let index = slot.need("index")?.size()?;
-        let mut found = Texture::plain(index, image, slot.size_or("texCoord", 0)?);
-        if let Some(transform) = slot.get("extensions").and_then(|e| e.get("KHR_texture_transform")) {
-            let pair = |key: &str, default: Vec2| {
-                transform
-                    .get(key)
-                    .map_or(Ok(default), |at| at.numbers::<2>().map(|n| Vec2::new(n[0] as f32, n[1] as f32)))
-            };
-            found.offset = pair("offset", Vec2::ZERO)?;
-            found.scale = pair("scale", Vec2::ONE)?;
-            found.rotation_rad = transform.get("rotation").map_or(Ok(0.0), |at| at.number())? as f32;
-            found.uv_set = transform.size_or("texCoord", found.uv_set)?;
-        }
-        if let Some(sampler) = texture.get("sampler") {
-            let sampler = root.entry("samplers", sampler.size()?)?;
-            for (wrap, key) in found.wrap.iter_mut().zip(["wrapS", "wrapT"]) {
-                *wrap = match sampler.size_or(key, 10497)? {
-                    33071 => Wrap::Clamp,
-                    33648 => Wrap::Mirror,
-                    _ => Wrap::Repeat,
-                };
-            }
-        }
-        Ok(Some(found))
+    let root = document.root();
+    let texture = root.entry("textures", slot.need("index")?.size()?)?;
+    let webp = texture.get("extensions").and_then(|e| e.get("EXT_texture_webp")?.get("source"));
+    let Some(source) = webp.or_else(|| texture.get("source")) else { return Ok(None) };
+    let image = source.index_into("images", document.count("images"))?;
+    let index = slot.need("index")?.size()?;
+    let mut found = Texture::plain(index, image, slot.size_or("texCoord", 0)?);
+    if let Some(transform) = slot.get("extensions").and_then(|e| e.get("KHR_texture_transform")) {
+        let pair = |key: &str, default: Vec2| {
+            transform.get(key).map_or(Ok(default), |at| at.numbers::<2>().map(|n| Vec2::new(n[0] as f32, n[1] as f32)))
+        };
+        found.offset = pair("offset", Vec2::ZERO)?;
+        found.scale = pair("scale", Vec2::ONE)?;
+        found.rotation_rad = transform.get("rotation").map_or(Ok(0.0), |at| at.number())? as f32;
+        found.uv_set = transform.size_or("texCoord", found.uv_set)?;
     }
+    if let Some(sampler) = texture.get("sampler") {
+        let sampler = root.entry("samplers", sampler.size()?)?;
+        for (wrap, key) in found.wrap.iter_mut().zip(["wrapS", "wrapT"]) {
+            *wrap = match sampler.size_or(key, 10497)? {
+                33071 => Wrap::Clamp,
+                33648 => Wrap::Mirror,
+                _ => Wrap::Repeat,
+            };
+        }
+    }
+    Ok(Some(found))
+}

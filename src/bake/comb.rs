@@ -1,10 +1,10 @@
 //! The comb's sources in the order that they decide: painted map, vertex attribute, whorls, strokes, the preset's rule.
 
 use crate::asset::Asset;
+use crate::data::maps::Maps;
 use crate::data::mesh::Mesh;
 use crate::error::Result;
 use crate::fur::field::{DirectionField, FieldSource, Whorl, directions};
-use crate::data::maps::Maps;
 use crate::fur::groom::maps::comb_directions;
 use crate::fur::groom::{Comb, Groom, Place};
 use crate::math::{DVec3, Vec3};

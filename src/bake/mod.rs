@@ -5,6 +5,7 @@ mod comb;
 pub mod picture;
 mod regions;
 mod skin;
+mod textures;
 pub mod units;
 mod weld;
 
@@ -31,6 +32,7 @@ use skin::Groomed;
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use textures::Textures;
 use units::{Scale, Units};
 use weld::Skin;
 
@@ -129,7 +131,7 @@ impl Steps<'_> {
 /// When the input cannot be used, names something that is not there, or the output cannot be written.
 pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Baked> {
     let mut steps = Steps { tell, steps: timing::Steps::default() };
-    let asset = steps.run("read", || asset::load(&request.input))?;
+    let mut asset = steps.run("read", || asset::load(&request.input))?;
     refuse_second(&asset)?;
     refuse_own_input(&request.input, &request.out)?;
     let chosen = asset::select(&asset.parts, &request.materials)?;
@@ -156,8 +158,8 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
         steps: timing::Steps::default(),
     };
     let hair_m = Fibre::guard(&request.preset.guard, &request.preset.colour, scale.diagonal_m as f32).length_m;
-    let skin = steps
-        .run("weld", || weld::join(&asset, |part| chosen.contains(&part), scale.metres_per_unit, hair_m))?;
+    let skin =
+        steps.run("weld", || weld::join(&asset, |part| chosen.contains(&part), scale.metres_per_unit, hair_m))?;
     // One tile per preset; primitives with the same preset share it.
     let mut tiles: Vec<(&Preset, Vec<usize>)> = Vec::new();
     for &index in &chosen {
@@ -169,7 +171,9 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
     }
     let mut carried: Vec<(usize, CoatPrimitive)> = Vec::new();
     for (preset, parts) in &tiles {
-        let task = Task { asset: &asset, skin: &skin, preset, parts, request, scale: &scale };
+        let has_uv = parts.iter().any(|&part| !asset.parts[part].stored.uv_sets.is_empty());
+        let textures = Textures::new(&mut asset.document, preset, has_uv)?;
+        let task = Task { asset: &asset, skin: &skin, preset, parts, request, scale: &scale, textures: &textures };
         let coated = match request.method {
             Method::Atlas { texels } => atlas::coat_parts(&task, texels, &mut steps)?,
             Method::Lapped => coat_parts(&task, |seed| Parameterisation::Lapped { seed }, &mut steps)?,
@@ -213,6 +217,8 @@ struct Task<'a> {
     parts: &'a [usize],
     request: &'a Request,
     scale: &'a Scale,
+    /// What coats show of pictures.
+    textures: &'a Textures,
 }
 
 /// Tiles and what carries them.
@@ -254,7 +260,8 @@ impl Task<'_> {
         let mut triangles: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         groomed.skin.part_of.iter().enumerate().for_each(|(t, &part)| triangles.entry(part).or_default().push(t));
         let carried = |(&part, triangles): (&u32, &Vec<usize>)| {
-            let own = if triangles.len() == patches.triangles.len() { None } else { Some(subset(patches, triangles, 1.0)) };
+            let own =
+                if triangles.len() == patches.triangles.len() { None } else { Some(subset(patches, triangles, 1.0)) };
             let own = own.as_ref().unwrap_or(patches);
             (part as usize, self.coat_primitive(part as usize, groomed, &groomed.fields, &axes, own, tile))
         };
@@ -282,7 +289,11 @@ impl Task<'_> {
         };
         let carried = coat_primitive(groomed.mesh(), fields, axes, patches, tile, self.request.seed, &local);
         let base_vertex = carried.base_vertex.iter().map(|&v| stored(v as usize) as u32).collect();
-        CoatPrimitive { mesh: at.mesh, primitive: at.primitive, base_vertex, ..carried }
+        let whole = CoatPrimitive { mesh: at.mesh, primitive: at.primitive, base_vertex, ..carried };
+        match &fields.paint {
+            Some(paint) => self.textures.painted(whole, paint, part, &patches.base_vertex),
+            None => whole,
+        }
     }
 }
 
@@ -328,8 +339,7 @@ fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: 
         let groomed = steps.run("groom", || all.cut(|part| parts.contains(&(part as usize))));
         let (direction, edge_m) = (&groomed.fields.direction, tiles[0].edge_m);
         let start = Instant::now();
-        let patches =
-            steps.run("patches", || parameterise(groomed.mesh(), direction, edge_m, method(request.seed)))?;
+        let patches = steps.run("patches", || parameterise(groomed.mesh(), direction, edge_m, method(request.seed)))?;
         let ms = start.elapsed().as_secs_f64() * 1e3;
         warnings.extend(groomed.notes.iter().chain(&patches.stats.warnings).cloned());
         let seams = request.judge.then(|| {

@@ -3,8 +3,8 @@
 use super::skin::{self, Groomed};
 use super::units::{self, Units};
 use super::weld;
-use crate::asset::{self, Asset, Pose};
 use crate::asset::strands::Export;
+use crate::asset::{self, Asset, Pose};
 use crate::coat::hair::TileHair;
 use crate::coat::primitive::{is_furred, offset_over_height};
 use crate::data::camera::Camera;

@@ -64,7 +64,14 @@ pub fn join(asset: &Asset, furred: impl Fn(usize) -> bool, metres_per_unit: f64,
 }
 
 impl Face {
-    fn new(part: &Part, index: usize, corners: [u32; 3], mesh: &Mesh, points: &[u32], (low, high): (Vec3, Vec3)) -> Self {
+    fn new(
+        part: &Part,
+        index: usize,
+        corners: [u32; 3],
+        mesh: &Mesh,
+        points: &[u32],
+        (low, high): (Vec3, Vec3),
+    ) -> Self {
         // Chance is drawn from the places in the mesh's own space, to the bit, so that units and other parts do not matter.
         let local = |v: u32| part.stored.positions[v as usize].to_array().map(|x| (x + 0.0).to_bits());
         let first = (0..3).min_by_key(|&k| local(corners[k])).unwrap_or(0);
@@ -102,14 +109,19 @@ fn welded(asset: &Asset, meshes: &[Mesh], hair_m: f32) -> Vec<Vec<u32>> {
         start.push(count);
         count += mesh.positions_m.len() as u32;
     }
-    let mut points: Vec<Vec<u32>> =
-        meshes.iter().zip(&start).map(|(mesh, start)| mesh.position_class.iter().map(|c| start + c).collect()).collect();
+    let mut points: Vec<Vec<u32>> = meshes
+        .iter()
+        .zip(&start)
+        .map(|(mesh, start)| mesh.position_class.iter().map(|c| start + c).collect())
+        .collect();
     for group in groups(asset).into_iter().filter(|group| group.len() > 1) {
         let one_mesh = group.iter().all(|&part| asset.parts[part].mesh == asset.parts[group[0]].mesh);
         // The vertices that stand for a place in their part.
         let candidates: Vec<(usize, u32)> = group
             .iter()
-            .flat_map(|&part| meshes[part].position_class.iter().zip(0..).filter(|(c, v)| **c == *v).map(move |(_, v)| (part, v)))
+            .flat_map(|&part| {
+                meshes[part].position_class.iter().zip(0..).filter(|(c, v)| **c == *v).map(move |(_, v)| (part, v))
+            })
             .collect();
         let positions: Vec<Vec3> = candidates.iter().map(|&(part, v)| meshes[part].positions_m[v as usize]).collect();
         let low = positions.iter().fold(Vec3::INFINITY, |low, &p| low.min(p));

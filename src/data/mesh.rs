@@ -153,7 +153,9 @@ impl Mesh {
         let mut sums = vec![I64Vec3::ZERO; self.positions_m.len()];
         for (t, triangle) in self.triangles.iter().enumerate() {
             let corners = self.corners_m(t).map(Vec3::as_dvec3);
-            let Some(normal) = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize() else { continue };
+            let Some(normal) = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize() else {
+                continue;
+            };
             for (k, &v) in triangle.iter().enumerate() {
                 let [a, b] = [corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]];
                 let angle = libm::atan2(a.cross(b).length(), a.dot(b));

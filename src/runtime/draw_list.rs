@@ -1,10 +1,10 @@
 //! What to draw and from where: posed, in metres, world axes, relative to one origin.
 
-use crate::data::texture::Wrap;
 use crate::data::coat::{FinEdge, Tile};
 use crate::data::film::Film;
 use crate::data::image::Image8;
 use crate::data::light::Light;
+use crate::data::texture::Wrap;
 use crate::math::{Mat4, Vec2, Vec3, Vec4};
 use std::borrow::Cow;
 
@@ -35,6 +35,10 @@ pub struct SkinMesh<'a> {
     pub uv: Vec<Vec2>,
     /// Base colour texture, sRGB coded RGBA, and what it shows beyond its borders.
     pub texture: Option<(&'a Image8, [Wrap; 2])>,
+    /// What is painted: density in red, length in green, and what it shows beyond its borders.
+    pub painted: Option<(&'a Image8, [Wrap; 2])>,
+    /// Texture coordinates of `painted`.
+    pub painted_uv: Vec<Vec2>,
     /// Tile whose innermost transmittance shades this skin.
     pub tile: Option<usize>,
     /// Texture coordinates in that tile.
@@ -62,6 +66,14 @@ pub struct CoatMesh<'a> {
     pub uv: Cow<'a, [Vec2]>,
     /// Colour factor (linear RGB) and density factor.
     pub tint: Cow<'a, [Vec4]>,
+    /// Colour at the root, sRGB coded RGBA, and what it shows beyond its borders.
+    pub colour: Option<(&'a Image8, [Wrap; 2])>,
+    /// What is painted at the root: density in red, length in green.
+    pub painted: Option<(&'a Image8, [Wrap; 2])>,
+    /// Texture coordinates of `colour` (xy) and `painted` (zw); empty where there is neither.
+    pub root: Cow<'a, [Vec4]>,
+    /// Longest length painted around each vertex; empty where none is.
+    pub longest: Cow<'a, [f32]>,
     /// Coat vertex indices; the outside is where the offsets point.
     pub triangles: &'a [[u32; 3]],
     /// Edges that may carry a fin.

@@ -191,7 +191,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
     };
     let textures = recorder.step(
         "decode textures",
-        || stage::textures(asset),
+        || stage::textures(asset, coat),
         |decoded| decoded.as_ref().map_or(0, |all| all.values().map(bytes_of).sum()),
     )?;
     let outline = chart::tile_outline();

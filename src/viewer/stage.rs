@@ -5,22 +5,25 @@ use crate::asset::part::Part;
 use crate::asset::pose::{Pose, Posed};
 use crate::data::coat::{Coat, CoatPrimitive, FinEdge, Sampled, Tile};
 use crate::data::image::Image8;
+use crate::data::texture::{Texture, Wrap};
 use crate::error::Result;
-use crate::math::{Vec2, Vec3};
+use crate::math::{Vec2, Vec3, Vec4};
 use crate::runtime::{CoatMesh, DrawList, SkinMesh};
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
-/// Decoded base colour textures, by glTF image.
+/// Decoded textures, by glTF image.
 pub type Textures = HashMap<usize, Image8>;
 
-/// Decodes every base colour texture that the parts use.
+/// Decodes every texture that the parts and their coat use.
 ///
 /// # Errors
 /// Names images that are broken or too large.
-pub fn textures(asset: &Asset) -> Result<Textures> {
+pub fn textures(asset: &Asset, coat: &Coat) -> Result<Textures> {
     let mut decoded = Textures::new();
-    for image in asset.parts.iter().filter_map(|part| part.base_colour.texture.as_ref()).map(|texture| texture.image) {
+    let of_coat = coat.primitives.iter().flat_map(|primitive| [&primitive.colour, &primitive.painted]);
+    let used = asset.parts.iter().map(|part| &part.base_colour.texture).chain(of_coat);
+    for image in used.flatten().map(|texture| texture.image) {
         if let std::collections::hash_map::Entry::Vacant(slot) = decoded.entry(image)
             && let Some(pixels) = asset.document.decode_image(image)?
         {
@@ -43,7 +46,7 @@ pub fn scene<'a>(asset: &'a Asset, coat: &'a Coat, textures: &'a Textures, pose:
             let posed = part.posed(asset, pose, node, coat.metres_per_unit);
             for coat_primitive in &carried {
                 scene.skins.push(furred_skin(part, &posed, coat_primitive, &coat.tiles[coat_primitive.tile], textures));
-                scene.furs.extend(furs(&posed, coat_primitive, &coat.tiles));
+                scene.furs.extend(furs(part, &posed, coat_primitive, &coat.tiles, textures));
             }
             scene.skins.push(bare_skin(part, &posed, &carried, textures));
         }
@@ -68,15 +71,57 @@ pub(super) fn fur<'a>(posed: &Posed, coat_primitive: &'a CoatPrimitive) -> CoatM
     CoatMesh {
         tile: coat_primitive.tile,
         positions_m: at(&posed.positions_m),
-        normals: if coat_primitive.normal.is_empty() { at(&posed.normals) } else { hair_normals(posed, coat_primitive) },
+        normals: if coat_primitive.normal.is_empty() {
+            at(&posed.normals)
+        } else {
+            hair_normals(posed, coat_primitive)
+        },
         offsets_m: turned(&coat_primitive.offset),
         axes: turned(&coat_primitive.axis),
         uv: Cow::from(&coat_primitive.uv),
         tint: Cow::from(&coat_primitive.tint),
         triangles: &coat_primitive.triangles,
         fins: Cow::from(&coat_primitive.fins),
-        over_last: false,
+        ..CoatMesh::default()
     }
+}
+
+/// `fur` with the textures that its roots read.
+fn painted_fur<'a>(
+    part: &Part,
+    fur: CoatMesh<'a>,
+    coat_primitive: &'a CoatPrimitive,
+    textures: &'a Textures,
+) -> CoatMesh<'a> {
+    let [colour, painted] =
+        [&coat_primitive.colour, &coat_primitive.painted].map(|texture| shown(part, texture.as_ref(), textures));
+    if colour.is_none() && painted.is_none() {
+        return fur;
+    }
+    let at = |texture: &Option<Texture>, v: u32| root_uv(part, texture.as_ref(), v);
+    let root = |&v: &u32| {
+        let (c, p) = (at(&coat_primitive.colour, v), at(&coat_primitive.painted, v));
+        Vec4::new(c.x, c.y, p.x, p.y)
+    };
+    CoatMesh {
+        colour,
+        painted,
+        root: coat_primitive.base_vertex.iter().map(root).collect(),
+        longest: Cow::from(&coat_primitive.longest),
+        ..fur
+    }
+}
+
+/// A texture's image and what it shows beyond its borders, where it was decoded and the part has coordinates for it.
+fn shown<'a>(part: &Part, texture: Option<&Texture>, textures: &'a Textures) -> Option<(&'a Image8, [Wrap; 2])> {
+    let texture = texture.filter(|texture| texture.uv_set < part.stored.uv_sets.len())?;
+    textures.get(&texture.image).map(|image| (image, texture.wrap))
+}
+
+/// Where a texture is read at a vertex of the part.
+fn root_uv(part: &Part, texture: Option<&Texture>, v: u32) -> Vec2 {
+    let uv = |texture: &Texture| Some(texture.transformed(*part.stored.uv_sets.get(texture.uv_set)?.get(v as usize)?));
+    texture.and_then(uv).unwrap_or(Vec2::ZERO)
 }
 
 /// Normals of the skin as hair stands on it: they turn as normals do, by the inverse transpose.
@@ -88,8 +133,14 @@ fn hair_normals(posed: &Posed, coat_primitive: &CoatPrimitive) -> Vec<Vec3> {
 }
 
 /// What a coat primitive is drawn as: once, or once per tile where it passes from one into another.
-fn furs<'a>(posed: &Posed, coat_primitive: &'a CoatPrimitive, tiles: &[Tile]) -> Vec<CoatMesh<'a>> {
-    let fur = fur(posed, coat_primitive);
+fn furs<'a>(
+    part: &Part,
+    posed: &Posed,
+    coat_primitive: &'a CoatPrimitive,
+    tiles: &[Tile],
+    textures: &'a Textures,
+) -> Vec<CoatMesh<'a>> {
+    let fur = painted_fur(part, fur(posed, coat_primitive), coat_primitive, textures);
     let Some(blend) = &coat_primitive.blend else { return vec![fur] };
     // Two coats at complementary densities: drawn over one another, optical depths add.
     let dense = |share: &dyn Fn(f32) -> f32| {
@@ -134,6 +185,12 @@ fn furred_skin<'a>(
         } else {
             coat_primitive.base_vertex.iter().map(|&v| whole.uv[v as usize]).collect()
         },
+        painted: shown(part, coat_primitive.painted.as_ref(), textures).filter(|_| tile.sampled == Sampled::Square),
+        painted_uv: coat_primitive
+            .base_vertex
+            .iter()
+            .map(|&v| root_uv(part, coat_primitive.painted.as_ref(), v))
+            .collect(),
         tile: Some(coat_primitive.tile),
         coat_uv: coat_primitive.uv.clone(),
         coat_density: coat_primitive

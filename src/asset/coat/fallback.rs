@@ -5,6 +5,7 @@ use super::parts::{part_of, set_extension};
 use crate::asset::accessor::AccessorLayout;
 use crate::asset::document::Document;
 use crate::asset::encode::Use;
+use crate::asset::image::png;
 use crate::asset::json::At;
 use crate::asset::pose::turn;
 use crate::asset::{Asset, Part};
@@ -80,7 +81,7 @@ fn materials(document: &mut Document, coat: &Coat, count: u32) -> Result<Vec<Vec
     for tile in &coat.tiles {
         let mut of_tile = Vec::new();
         for (shell, image) in flatten::shells(&tile.shells, tile.height_m, count).iter().enumerate() {
-            let view = document.push_view(&flatten::png(image)?, None);
+            let view = document.push_view(&png(image)?, None);
             let name = format!("{} fur shell {}", tile.preset, shell + 1);
             let image = document.push("images", json!({"name": name, "mimeType": "image/png", "bufferView": view}));
             let texture = document.push("textures", json!({"sampler": sampler, "source": image}));

@@ -3,7 +3,6 @@
 use crate::data::coat::ShellStack;
 use crate::data::image::{Image8, linear_from_srgb, srgb_from_linear, unorm8};
 use crate::data::shell::{HairMedium, depth_of_byte, gain_at, unorm};
-use crate::error::{Error, Kind, Result};
 use crate::math::Vec3;
 
 /// The view, from the skin's normal, whose opacity is kept: about the mean over what faces a viewer.
@@ -69,17 +68,4 @@ fn opacity(stack: &ShellStack, slab: usize, texel: usize, gain: f32, thickness_m
         })
         .sum();
     1.0 - clear / AZIMUTHS as f32
-}
-
-/// An RGBA image as PNG.
-///
-/// # Errors
-/// When it cannot be encoded.
-pub fn png(image: &Image8) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
-    let colour = image::ExtendedColorType::Rgba8;
-    image::ImageEncoder::write_image(encoder, &image.pixels, image.width, image.height, colour)
-        .map_err(|error| Error::new(Kind::Output, format!("a texture cannot be written as PNG: {error}")))?;
-    Ok(bytes)
 }

@@ -32,7 +32,10 @@ pub fn pools(asset: &Asset, primitives: &[CoatPrimitive]) -> Result<Vec<Pool>> {
         let at = root.entry("meshes", primitive.mesh)?.entry("primitives", primitive.primitive)?;
         let accessors = at.need("attributes")?.value.clone();
         let alike = |pool: &&mut (Value, Pool)| {
-            pool.0 == accessors && pool.1.vertices.blend.is_none() && own.blend.is_none() && painted_alike(&pool.1.vertices, &own)
+            pool.0 == accessors
+                && pool.1.vertices.blend.is_none()
+                && own.blend.is_none()
+                && painted_alike(&pool.1.vertices, &own)
         };
         let numbers: Vec<u32> = (0..own.base_vertex.len() as u32).collect();
         match pools.iter_mut().find(alike) {
@@ -40,7 +43,8 @@ pub fn pools(asset: &Asset, primitives: &[CoatPrimitive]) -> Result<Vec<Pool>> {
             None => pools.push((accessors, Pool { vertices: own, members: vec![(index, numbers)] })),
         }
     }
-    let merged = |(_, pool): (Value, Pool)| if pool.members.len() > 1 { merge(asset, primitives, pool) } else { Ok(pool) };
+    let merged =
+        |(_, pool): (Value, Pool)| if pool.members.len() > 1 { merge(asset, primitives, pool) } else { Ok(pool) };
     pools.into_iter().map(merged).collect()
 }
 

@@ -1,8 +1,8 @@
 //! The comb that a map paints, at a mesh's vertices.
 
 use crate::data::image::Image8;
-use crate::data::mesh::Mesh;
 use crate::data::maps::{painted_comb, uv_axes};
+use crate::data::mesh::Mesh;
 use crate::math::{Vec2, Vec3};
 
 /// The comb direction that `map` paints at every vertex, world axes; zero where it paints none or the UVs have no

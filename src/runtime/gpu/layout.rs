@@ -106,14 +106,34 @@ pub struct CoatVertex {
     pub offset_m: [f32; 3],
     /// Second texture coordinate.
     pub v: f32,
-    /// SkinMesh normal.
+    /// Normal of the skin.
     pub normal: [f32; 3],
-    pub(super) _pad0: f32,
+    /// Longest length painted around it.
+    pub longest: f32,
     /// The tile's x axis on the skin.
     pub axis: [f32; 3],
-    pub(super) _pad1: f32,
+    pub(super) _pad0: f32,
     /// Colour and density factors.
     pub tint: [f32; 4],
+    /// Where textures of the root are read: of colour, of what is painted.
+    pub root: [f32; 4],
+}
+
+/// `Paint` of `shared/coat.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct PaintUniform {
+    /// 1 where there is a texture of colour.
+    pub has_colour: u32,
+    /// 1 where density and length are painted.
+    pub has_painted: u32,
+}
+
+impl PaintUniform {
+    /// What `fur` has.
+    pub fn new(fur: &CoatMesh<'_>) -> Self {
+        Self { has_colour: u32::from(fur.colour.is_some()), has_painted: u32::from(fur.painted.is_some()) }
+    }
 }
 
 impl CoatVertex {
@@ -126,10 +146,11 @@ impl CoatVertex {
                 offset_m: fur.offsets_m[i].to_array(),
                 v: fur.uv[i].y,
                 normal: fur.normals[i].to_array(),
-                _pad0: 0.0,
+                longest: fur.longest.get(i).copied().unwrap_or(1.0),
                 axis: fur.axes.get(i).map_or([0.0; 3], |axis| axis.to_array()),
-                _pad1: 0.0,
+                _pad0: 0.0,
                 tint: fur.tint[i].to_array(),
+                root: fur.root.get(i).map_or([0.0; 4], |root| root.to_array()),
             })
             .collect()
     }
@@ -170,12 +191,15 @@ pub struct SkinVertex {
     pub coat_uv: [f32; 2],
     /// Density factor of the coat; 0 where there is none.
     pub coat_density: f32,
+    /// Texture coordinate of what is painted.
+    pub painted_uv: [f32; 2],
 }
 
 impl SkinVertex {
     /// Attribute formats, by location.
-    pub const ATTRIBUTES: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![
-        0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x2, 4 => Float32x2, 5 => Float32
+    pub const ATTRIBUTES: [wgpu::VertexAttribute; 7] = wgpu::vertex_attr_array![
+        0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x2, 4 => Float32x2, 5 => Float32,
+        6 => Float32x2
     ];
 
     /// The vertices of `skin`.
@@ -188,6 +212,7 @@ impl SkinVertex {
                 uv: skin.uv.get(i).map_or([0.0; 2], |uv| uv.to_array()),
                 coat_uv: skin.coat_uv.get(i).map_or([0.0; 2], |uv| uv.to_array()),
                 coat_density: skin.coat_density.get(i).copied().unwrap_or(0.0),
+                painted_uv: skin.painted_uv.get(i).map_or([0.0; 2], |uv| uv.to_array()),
             })
             .collect()
     }

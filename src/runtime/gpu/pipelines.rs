@@ -45,9 +45,9 @@ pub struct Layouts {
     pub view: wgpu::BindGroupLayout,
     /// Group 1: a tile.
     pub tile: wgpu::BindGroupLayout,
-    /// Group 2 of shells and fins: geometry.
+    /// Group 2 of shells and fins: geometry, and textures of the root.
     pub geometry: wgpu::BindGroupLayout,
-    /// Group 2 of the skin: its texture.
+    /// Group 2 of the skin: its textures.
     pub material: wgpu::BindGroupLayout,
     /// Group 3 of fins: their textures.
     pub fin: wgpu::BindGroupLayout,
@@ -89,8 +89,8 @@ impl Layouts {
         Self {
             view: group("view", &[uniform]),
             tile: group("tile", &[uniform, storage, storage, sampler, array, array, array]),
-            geometry: group("geometry", &[storage, storage]),
-            material: group("material", &[sampler, array]),
+            geometry: group("geometry", &[storage, storage, uniform, sampler, array, sampler, array]),
+            material: group("material", &[sampler, array, sampler, array]),
             fin: group("fin", &[sampler, array, array]),
             samples: group("samples", &[texture(false, wgpu::TextureViewDimension::D2), depths]),
         }

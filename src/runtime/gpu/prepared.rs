@@ -1,7 +1,7 @@
 //! A pose on the device, ready to be drawn from anywhere in any light.
 
 use super::layout::ViewUniform;
-use super::resources::{self, GpuFur, GpuSkin};
+use super::resources::{self, GpuFur, GpuSkin, Textures};
 use super::targets::Targets;
 use super::{Drawn, PassCost, Renderer};
 use crate::error::{Error, Result};
@@ -31,11 +31,22 @@ impl<'a> Prepared<'a> {
     pub(super) fn new(renderer: &'a Renderer<'a>, scene: &DrawList<'_>) -> Result<Self> {
         let (gpu, layouts) = (renderer.gpu, &renderer.pipelines.layouts);
         let view = gpu.buffer("view", &[ViewUniform::zeroed()], wgpu::BufferUsages::UNIFORM);
-        let (skins, skin_bytes) = resources::skins(gpu, layouts, &scene.skins)?;
-        let furs: Vec<_> = scene.furs.iter().map(|fur| GpuFur::new(gpu, layouts, fur)).collect();
+        let mut textures = Textures::new();
+        for skin in scene.skins.iter().filter(|skin| !skin.triangles.is_empty()) {
+            textures.add(gpu, skin.texture, true)?;
+            textures.add(gpu, skin.painted, false)?;
+        }
+        for fur in &scene.furs {
+            textures.add(gpu, fur.colour, true)?;
+            textures.add(gpu, fur.painted, false)?;
+        }
+        let skins = resources::skins(gpu, layouts, &scene.skins, &textures);
+        let furs: Vec<_> = scene.furs.iter().filter_map(|fur| GpuFur::new(gpu, layouts, fur, &textures)).collect();
+        let geometry =
+            skins.iter().map(|skin| skin.geometry_bytes).chain(furs.iter().map(|fur| fur.bytes)).sum::<u64>();
         Ok(Self {
             renderer,
-            bytes: skin_bytes + furs.iter().map(|fur| fur.bytes).sum::<u64>(),
+            bytes: geometry + textures.bytes,
             skins,
             furs,
             view_group: gpu.group(&layouts.view, &[&view]),

@@ -1,11 +1,11 @@
 //! What pictures need on the device: tiles, and the geometry of a pose.
 
-use super::layout::{CoatVertex, FinInstance, Mip, SkinVertex, TileUniform, medium_unit_per_m};
+use super::layout::{CoatVertex, FinInstance, Mip, PaintUniform, SkinVertex, TileUniform, medium_unit_per_m};
 use super::pipelines::Layouts;
-use crate::data::texture::Wrap;
 use crate::data::coat::{FinTexture, Sampled, ShellStack, Tile};
 use crate::data::image::Image8;
 use crate::data::shell::{signed, unorm};
+use crate::data::texture::Wrap;
 use crate::error::Result;
 use crate::gpu::{Coding, Gpu, TextureArray};
 use crate::math::Vec2;
@@ -142,53 +142,83 @@ pub struct GpuSkin {
     pub index_count: u32,
     /// Tile that shades it.
     pub tile: Option<usize>,
-    /// What drawing it reads: geometry and texture.
+    /// What drawing it reads: geometry and textures.
     pub bytes: u64,
+    /// Memory of its geometry.
+    pub geometry_bytes: u64,
 }
 
 impl GpuSkin {
-    /// Uploads `skin`, which shows `texture`.
-    pub fn new(gpu: &Gpu, layouts: &Layouts, skin: &SkinMesh<'_>, texture: &TextureArray) -> Self {
-        let wrap = skin.texture.map_or([Wrap::Repeat; 2], |(_, wrap)| wrap);
-        let sampler = sampler(gpu, wrap, 16);
-        let material = bind(gpu, &layouts.material, &[wgpu::BindingResource::Sampler(&sampler), view(texture)]);
+    /// Uploads `skin`, which shows `texture`; `painted` is what is painted on it.
+    fn new(gpu: &Gpu, layouts: &Layouts, skin: &SkinMesh<'_>, [texture, painted]: [&TextureArray; 2]) -> Self {
+        let wrap = |of: Option<(&Image8, [Wrap; 2])>| of.map_or([Wrap::Repeat; 2], |(_, wrap)| wrap);
+        let samplers = [sampler(gpu, wrap(skin.texture), 16), sampler(gpu, wrap(skin.painted), 4)];
+        let [base, paint] = samplers.each_ref().map(wgpu::BindingResource::Sampler);
+        let material = bind(gpu, &layouts.material, &[base, view(texture), paint, view(painted)]);
         let vertices = SkinVertex::of(skin);
-        let bytes = texture.bytes + bytes_of(&vertices) + bytes_of(&skin.triangles);
+        let geometry_bytes = bytes_of(&vertices) + bytes_of(&skin.triangles);
         Self {
             material,
             vertices: gpu.buffer("skin vertices", &vertices, wgpu::BufferUsages::VERTEX),
             indices: gpu.buffer("skin indices", &skin.triangles, wgpu::BufferUsages::INDEX),
             index_count: 3 * skin.triangles.len() as u32,
             tile: skin.tile,
-            bytes,
+            bytes: geometry_bytes + texture.bytes + painted.bytes,
+            geometry_bytes,
         }
     }
 }
 
-/// Uploads what has triangles of `skins`; skins that show the same texture share it. Gives the bytes of all of it, too.
-///
-/// # Errors
-/// As [`Gpu::texture_array`].
-pub fn skins(gpu: &Gpu, layouts: &Layouts, skins: &[SkinMesh<'_>]) -> Result<(Vec<GpuSkin>, u64)> {
-    let white = Image8 { width: 1, height: 1, channels: 4, pixels: vec![255; 4] };
-    let mut textures: Vec<(&Image8, TextureArray)> = Vec::new();
-    let (mut uploaded, mut bytes) = (Vec::new(), 0);
-    for skin in skins.iter().filter(|skin| !skin.triangles.is_empty()) {
-        let image = skin.texture.map_or(&white, |(image, _)| image);
-        let known = textures.iter().position(|(known, _)| std::ptr::eq(*known, image));
-        let at = match known {
-            Some(at) => at,
-            None => {
-                textures.push((image, gpu.texture_array("base colour", &mip_chain(image), Coding::Srgb)?));
-                textures.len() - 1
-            }
-        };
-        let texture = &textures[at].1;
-        let skin = GpuSkin::new(gpu, layouts, skin, texture);
-        bytes += if known.is_some() { skin.bytes - texture.bytes } else { skin.bytes };
-        uploaded.push(skin);
+/// Textures of the asset on the device, each once.
+pub struct Textures<'a> {
+    white: Image8,
+    images: Vec<(&'a Image8, bool, TextureArray)>,
+    blank: Option<TextureArray>,
+    /// Memory of all of them.
+    pub bytes: u64,
+}
+
+impl<'a> Textures<'a> {
+    /// None yet.
+    pub fn new() -> Self {
+        let white = Image8 { width: 1, height: 1, channels: 4, pixels: vec![255; 4] };
+        Self { white, images: Vec::new(), blank: None, bytes: 0 }
     }
-    Ok((uploaded, bytes))
+
+    /// Uploads `image` where it is not there yet, as colour or as plain numbers; a white one for none.
+    ///
+    /// # Errors
+    /// As [`Gpu::texture_array`].
+    pub fn add(&mut self, gpu: &Gpu, image: Option<(&'a Image8, [Wrap; 2])>, colour: bool) -> Result<()> {
+        if self.blank.is_none() {
+            self.blank = Some(gpu.texture_array("white", &mip_chain(&self.white, true), Coding::Srgb)?);
+        }
+        let Some((image, _)) = image else { return Ok(()) };
+        if self.images.iter().all(|(known, as_colour, _)| !std::ptr::eq(*known, image) || *as_colour != colour) {
+            let coding = if colour { Coding::Srgb } else { Coding::Linear };
+            let array = gpu.texture_array("texture", &mip_chain(image, colour), coding)?;
+            self.bytes += array.bytes;
+            self.images.push((image, colour, array));
+        }
+        Ok(())
+    }
+
+    /// An image that was added.
+    fn get(&self, image: Option<(&Image8, [Wrap; 2])>, colour: bool) -> Option<&TextureArray> {
+        let known = |(image, _): (&Image8, [Wrap; 2])| {
+            self.images.iter().find(|(known, as_colour, _)| std::ptr::eq(*known, image) && *as_colour == colour)
+        };
+        image.and_then(known).map(|(_, _, array)| array).or(self.blank.as_ref())
+    }
+}
+
+/// Uploads what has triangles of `skins`, whose textures were added.
+pub fn skins(gpu: &Gpu, layouts: &Layouts, skins: &[SkinMesh<'_>], textures: &Textures<'_>) -> Vec<GpuSkin> {
+    let uploaded = |skin: &SkinMesh<'_>| {
+        let shown = [textures.get(skin.texture, true)?, textures.get(skin.painted, false)?];
+        Some(GpuSkin::new(gpu, layouts, skin, shown))
+    };
+    skins.iter().filter(|skin| !skin.triangles.is_empty()).filter_map(uploaded).collect()
 }
 
 /// Shells and fins on the device.
@@ -210,30 +240,48 @@ pub struct GpuFur {
 }
 
 impl GpuFur {
-    /// Uploads `fur`.
-    pub fn new(gpu: &Gpu, layouts: &Layouts, fur: &CoatMesh<'_>) -> Self {
+    /// Uploads `fur`, whose textures were added; none without them.
+    pub fn new(gpu: &Gpu, layouts: &Layouts, fur: &CoatMesh<'_>, textures: &Textures<'_>) -> Option<Self> {
         let vertices = CoatVertex::of(fur);
         let fins: Vec<FinInstance> = fur.fins.iter().map(FinInstance::from).collect();
         let bytes = bytes_of(&vertices) + bytes_of(fur.triangles) + bytes_of(&fins);
         let vertices = gpu.buffer("coat vertices", &vertices, wgpu::BufferUsages::STORAGE);
         let indices = gpu.buffer("coat indices", fur.triangles, wgpu::BufferUsages::STORAGE);
         let edges = gpu.buffer("fins", &fins, wgpu::BufferUsages::STORAGE);
-        Self {
-            shells: bind(gpu, &layouts.geometry, &[vertices.as_entire_binding(), indices.as_entire_binding()]),
-            fins: bind(gpu, &layouts.geometry, &[vertices.as_entire_binding(), edges.as_entire_binding()]),
+        let paint = gpu.buffer("paint", &[PaintUniform::new(fur)], wgpu::BufferUsages::UNIFORM);
+        let wrap = |of: Option<(&Image8, [Wrap; 2])>| of.map_or([Wrap::Repeat; 2], |(_, wrap)| wrap);
+        let [colour, painted] = [sampler(gpu, wrap(fur.colour), 4), sampler(gpu, wrap(fur.painted), 4)];
+        let shown = [textures.get(fur.colour, true)?, textures.get(fur.painted, false)?];
+        let group = |faces: &wgpu::Buffer| {
+            let resources = [
+                vertices.as_entire_binding(),
+                faces.as_entire_binding(),
+                paint.as_entire_binding(),
+                wgpu::BindingResource::Sampler(&colour),
+                view(shown[0]),
+                wgpu::BindingResource::Sampler(&painted),
+                view(shown[1]),
+            ];
+            bind(gpu, &layouts.geometry, &resources)
+        };
+        Some(Self {
+            shells: group(&indices),
+            fins: group(&edges),
             shell_vertices: 3 * fur.triangles.len() as u32,
             fin_vertices: 6 * fins.len() as u32,
             tile: fur.tile,
             over_last: fur.over_last,
             bytes,
-        }
+        })
     }
 }
 
-/// Halves `image` down to one texel, averaging linear light, so that distant skin does not sparkle.
-fn mip_chain(image: &Image8) -> Vec<Vec<Image8>> {
+/// Halves `image` down to one texel, averaging linear light where it is colour, so that what is distant does not sparkle.
+fn mip_chain(image: &Image8, colour: bool) -> Vec<Vec<Image8>> {
     use crate::data::image::{linear_from_srgb, srgb_from_linear, unorm8};
-    let table: Vec<f32> = (0..256).map(|byte| linear_from_srgb(byte as f32 / 255.0)).collect();
+    let decoded = |value: f32| if colour { linear_from_srgb(value) } else { value };
+    let coded = |value: f32| if colour { srgb_from_linear(value) } else { value };
+    let table: Vec<f32> = (0..256).map(|byte| decoded(byte as f32 / 255.0)).collect();
     let mut chain = vec![vec![image.clone()]];
     loop {
         let last = &chain[chain.len() - 1][0];
@@ -249,7 +297,7 @@ fn mip_chain(image: &Image8) -> Vec<Vec<Image8>> {
                 let start = ((y * half.width + x) * 4) as usize;
                 for channel in 0..3 {
                     let mean = four.iter().map(|p| table[p[channel] as usize]).sum::<f32>() / 4.0;
-                    half.pixels[start + channel] = unorm8(srgb_from_linear(mean));
+                    half.pixels[start + channel] = unorm8(coded(mean));
                 }
                 half.pixels[start + 3] = (four.iter().map(|p| u32::from(p[3])).sum::<u32>() / 4) as u8;
             }

@@ -3,9 +3,9 @@
 use super::CoveredPart;
 use super::colours::DISTINCT;
 use super::shapes::Shapes;
-use crate::data::texture::Wrap;
 use crate::data::coat::Coat;
 use crate::data::image::Image8;
+use crate::data::texture::Wrap;
 use crate::error::Result;
 use crate::fur::patch;
 use crate::math::Vec3;
