@@ -1,6 +1,6 @@
 //! `inspect`'s numbers against counts made by hand.
 
-use furrier::coat::summary::summarise;
+use furrier::coat::summary::{draw_calls_note, summarise};
 use furrier::data::coat::{Coat, CoatPrimitive, FinEdge, FinTexture, Sampled, ShellStack, Tile};
 use furrier::data::image::Image8;
 use furrier::math::{Vec2, Vec3, Vec4};
@@ -59,4 +59,19 @@ fn more_layers_fins_and_primitives_are_counted() {
     let summary = summarise(&more);
     assert_eq!(summary.draw_calls, plain.draw_calls + 4);
     assert_eq!(summary.drawn_triangles, plain.drawn_triangles + 8);
+}
+
+#[test]
+fn a_coat_of_many_draw_calls_says_how_to_have_fewer() {
+    let mut many = coat();
+    assert_eq!(draw_calls_note(&many), None);
+    many.primitives = vec![many.primitives[0].clone(); 40];
+    assert_eq!(draw_calls_note(&many), None, "200 draw calls");
+    many.primitives.push(many.primitives[0].clone());
+    let told = draw_calls_note(&many).unwrap();
+    assert!(told.contains("205 draw calls over 41 primitives") && told.contains("joined"), "{told}");
+    many.primitives.truncate(1);
+    many.tiles[0].shells.layers = 300;
+    let told = draw_calls_note(&many).unwrap();
+    assert!(told.contains("300 draw calls") && told.contains("layers") && !told.contains("joined"), "{told}");
 }

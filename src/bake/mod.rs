@@ -17,6 +17,7 @@ use crate::coat::judge::{CoverageRow, Effort, coverage_table};
 use crate::coat::measures::Measures;
 use crate::coat::primitive::{Local, coat_primitive};
 use crate::coat::seams::{WINDOWS, before_after};
+use crate::coat::summary::draw_calls_note;
 use crate::coat::tile::{TileRecipe, bake as bake_tile};
 use crate::data::coat::{Blend, Coat, CoatPrimitive, Tile};
 use crate::data::fields::Fields;
@@ -201,6 +202,7 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
     carried.sort_by_key(|(index, _)| *index);
     coat.primitives.extend(carried.into_iter().map(|(_, primitive)| primitive));
     notes.extend(steps.run("write", || write_coat(&asset, &coat, request.fallback, &request.out))?);
+    notes.extend(draw_calls_note(&coat));
     baked.coat = coat;
     (baked.notes, baked.warnings) = (notes, warnings);
     baked.steps = steps.steps;

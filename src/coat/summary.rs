@@ -8,6 +8,8 @@ use serde::Serialize;
 pub const SCREEN: (f64, f64) = (1080.0, 40.0);
 /// From this many pixels between neighbouring shells on, they are seen as layers.
 const GAP_PIXELS: f64 = 2.0;
+/// Draw calls that a game can spare for a coat.
+const MANY_DRAW_CALLS: usize = 200;
 /// Graphics memory of a coat vertex: base vertex, patch, UV, offset, axis and tint.
 const VERTEX_BYTES: usize = 4 + 4 + 8 + 12 + 12 + 16;
 /// Graphics memory of a fin: four vertex indices, an interval and a thickness.
@@ -98,6 +100,19 @@ pub fn summarise(coat: &Coat) -> Summary {
         tiles,
         primitives,
     }
+}
+
+/// What to tell of a coat that takes many draw calls.
+pub fn draw_calls_note(coat: &Coat) -> Option<String> {
+    let Summary { draw_calls, primitives, .. } = summarise(coat);
+    let layers = "fewer layers (`set` shells.layers=…)";
+    let advice = match primitives.len() {
+        0 | 1 => format!("; {layers} take fewer"),
+        n => format!(
+            " over {n} primitives: meshes of one material, joined in the modelling program, or {layers} take fewer"
+        ),
+    };
+    (draw_calls > MANY_DRAW_CALLS).then(|| format!("the coat takes {draw_calls} draw calls{advice}"))
 }
 
 /// Area of a primitive's triangles in texture space, in squares of one unit.
