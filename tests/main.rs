@@ -59,6 +59,7 @@ mod sweeps;
 mod thinned;
 mod twins;
 mod undercoat;
+mod units;
 mod validator;
 mod viewer;
 mod witness;

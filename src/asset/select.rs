@@ -4,7 +4,7 @@ use super::part::Part;
 use crate::error::{Error, Result};
 
 /// Words in a material's name that mean it has no fur.
-const BARE: [&str; 18] = [
+const BARE: [&str; 21] = [
     "eye",
     "eyes",
     "nose",
@@ -23,6 +23,9 @@ const BARE: [&str; 18] = [
     "lashes",
     "eyelash",
     "eyelashes",
+    "ground",
+    "floor",
+    "terrain",
 ];
 
 /// Indices of the parts to fur.

@@ -1,5 +1,6 @@
 //! The comb's sources in the order that they decide: painted map, vertex attribute, whorls, strokes, the preset's rule.
 
+use super::units::Scale;
 use crate::asset::Asset;
 use crate::data::maps::Maps;
 use crate::data::mesh::Mesh;
@@ -22,7 +23,7 @@ pub fn comb(
     mesh: &Mesh,
     groom: &Groom,
     maps: &Maps,
-    metres_per_unit: f64,
+    scale: &Scale,
     notes: &mut Vec<String>,
 ) -> Result<DirectionField> {
     let mut sources = Vec::new();
@@ -33,7 +34,7 @@ pub fn comb(
         sources.push(FieldSource::Vertices(attribute.clone()));
     }
     if !groom.whorls.is_empty() || !groom.strokes.is_empty() {
-        let brush = Brush::new(asset, metres_per_unit);
+        let brush = Brush::new(asset, scale);
         sources.extend(brush.sources(groom));
         brush.misses(groom, notes);
     }
@@ -55,23 +56,23 @@ struct Brush<'a> {
     low: DVec3,
     high: DVec3,
     origin: DVec3,
-    metres_per_unit: f64,
+    scale: &'a Scale,
 }
 
 impl<'a> Brush<'a> {
-    fn new(asset: &'a Asset, metres_per_unit: f64) -> Self {
+    fn new(asset: &'a Asset, scale: &'a Scale) -> Self {
         let points = || asset.parts.iter().flat_map(|part| (0..part.vertices()).map(|v| part.world_units(v)));
         Self {
             asset,
             low: points().fold(DVec3::INFINITY, DVec3::min),
             high: points().fold(DVec3::NEG_INFINITY, DVec3::max),
             origin: asset.parts.first().map_or(DVec3::ZERO, |part| part.centre_units),
-            metres_per_unit,
+            scale,
         }
     }
 
     fn diagonal_m(&self) -> f32 {
-        (self.asset.diagonal_units * self.metres_per_unit) as f32
+        self.scale.diagonal_m as f32
     }
 
     fn point_m(&self, place: Place) -> Vec3 {
@@ -79,7 +80,7 @@ impl<'a> Brush<'a> {
             Place::Relative(share) => self.low + (self.high - self.low) * Vec3::from(share).as_dvec3(),
             Place::Units(units) => DVec3::from(units),
         };
-        ((units - self.origin) * self.metres_per_unit).as_vec3()
+        ((units - self.origin) * self.scale.metres_per_unit).as_vec3()
     }
 
     fn sources(&self, groom: &Groom) -> Vec<FieldSource> {
@@ -109,7 +110,7 @@ impl<'a> Brush<'a> {
                 .parts
                 .iter()
                 .flat_map(|part| (0..part.vertices()).map(|v| part.world_units(v)))
-                .map(|p| ((p - self.origin) * self.metres_per_unit).as_vec3())
+                .map(|p| ((p - self.origin) * self.scale.metres_per_unit).as_vec3())
                 .map(|p| crate::fur::field::distance_to_line(p, &line))
                 .fold(f32::INFINITY, f32::min);
             if nearest_m >= reach_m {

@@ -2,6 +2,7 @@
 
 mod atlas;
 mod comb;
+mod extent;
 pub mod picture;
 mod regions;
 mod skin;
@@ -87,7 +88,7 @@ pub struct Baked {
     pub warnings: Vec<String>,
     /// Materials that got fur.
     pub materials: Vec<String>,
-    /// Bounding diagonal that lengths refer to, m.
+    /// Bounding diagonal of what is furred, which lengths refer to, m.
     pub diagonal_m: f64,
     /// Comb and parameterisation of what was laid out together.
     pub laid: Vec<Laid>,
@@ -144,9 +145,9 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
                 .with_expected(names(asset.parts.iter()).join(", ")));
         }
     }
-    let scale = units::scale(request.units, &request.preset, &asset, request.input.starts_with("sample:"))?;
+    let scale = units::scale(request.units, &request.preset, &asset, &chosen, request.input.starts_with("sample:"))?;
     let mut notes: Vec<String> = scale.note.iter().cloned().collect();
-    let mut warnings = asset.warnings.clone();
+    let mut warnings = [&asset.warnings[..], &scale.warnings].concat();
     let mut coat = Coat { metres_per_unit: scale.metres_per_unit, ..Coat::default() };
     let mut baked = Baked {
         coat: Coat::default(),

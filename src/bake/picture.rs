@@ -75,9 +75,9 @@ impl Grown {
         let asset = asset::load(&request.input)?;
         let chosen = asset::select(&asset.parts, &request.materials)?;
         let preset = &request.preset;
-        let scale = units::scale(request.units, preset, &asset, request.input.starts_with("sample:"))?;
+        let scale = units::scale(request.units, preset, &asset, &chosen, request.input.starts_with("sample:"))?;
         let mut notes = asset.warnings.clone();
-        notes.extend(scale.note.clone());
+        notes.extend(scale.note.iter().chain(&scale.warnings).cloned());
         let pose = match &request.pose {
             Some((animation, seconds)) => {
                 let index = asset.animation(animation).map_err(|e| e.with_parameter("pose"))?;

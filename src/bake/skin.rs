@@ -49,7 +49,7 @@ pub fn groom(
     let mut notes = Vec::new();
     let maps = Arc::new(decode(&preset.maps)?);
     let paint = paint(asset, skin, &bare, preset, &maps, &mut notes)?;
-    let comb = comb(asset, &skin.mesh, &preset.groom, &maps, scale.metres_per_unit, &mut notes)?;
+    let comb = comb(asset, &skin.mesh, &preset.groom, &maps, scale, &mut notes)?;
     let diagonal_m = scale.diagonal_m as f32;
     let guard = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
     let undercoat = Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m);

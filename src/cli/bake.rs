@@ -43,7 +43,8 @@ pub struct Bake {
     /// hooves, horns, pads or lashes
     #[arg(long = "material", value_name = "NAME")]
     materials: Vec<String>,
-    /// What one unit of the file is; auto takes the asset to be as large as what the preset describes
+    /// What one unit of the file is; auto takes what is furred to be as large as what the preset describes; where that is a small
+    /// part of a figure, as a hat is, it takes the unit that makes the figure as large as an animal or a person
     #[arg(long, value_enum, default_value_t = UnitName::Auto)]
     units: UnitName,
     /// How the skin is laid out in the plane: patches grown along the hair, charts with texels of their own, or the
@@ -109,7 +110,7 @@ struct Outcome<'a> {
     output: &'a Path,
     /// Materials that got fur.
     materials: &'a [String],
-    /// Bounding diagonal that lengths refer to, m.
+    /// Bounding diagonal of what is furred, which lengths refer to, m.
     diagonal_m: f64,
     notes: &'a [String],
     warnings: &'a [String],

@@ -27,7 +27,7 @@ pub const LENGTH_SPREAD: f32 = 2.0;
 const TIP_EXPONENT: f32 = 4.0;
 
 impl Fibre {
-    /// Guard hair on a mesh with bounding diagonal `diagonal_m`.
+    /// Guard hair on skin with bounding diagonal `diagonal_m`.
     pub fn guard(guard: &Guard, colour: &Colour, diagonal_m: f32) -> Self {
         Self {
             density_per_m2: guard.density_per_cm2 * 1e4,
@@ -44,7 +44,7 @@ impl Fibre {
         }
     }
 
-    /// Undercoat on a mesh with bounding diagonal `diagonal_m`.
+    /// Undercoat on skin with bounding diagonal `diagonal_m`.
     pub fn undercoat(undercoat: &Undercoat, colour: &Colour, diagonal_m: f32) -> Self {
         Self {
             density_per_m2: undercoat.density_per_cm2 * 1e4,

@@ -21,12 +21,12 @@ pub use comb::{Comb, Line, Place, Stroke, Whorl};
 pub enum Length {
     /// Millimetres on the animal described.
     Mm(f32),
-    /// Share of the mesh's bounding diagonal.
+    /// Share of the bounding diagonal of what is furred.
     Relative(f32),
 }
 
 impl Length {
-    /// In metres, for a mesh whose bounding diagonal is `diagonal_m`.
+    /// In metres, where what is furred has the bounding diagonal `diagonal_m`.
     pub fn metres(self, diagonal_m: f32) -> f32 {
         match self {
             Self::Mm(mm) => mm * 1e-3,
