@@ -96,7 +96,7 @@ pub fn figure<'a>(asset: &'a Asset, chosen: &[usize]) -> Vec<&'a Part> {
 
 /// The uppermost joint above a part: above its skin's joints, or above the node that it hangs on.
 fn skeleton(scene: &SceneGraph, joints: &BTreeSet<usize>, part: &Part) -> Option<usize> {
-    let joint = part.skin.and_then(|skin| scene.skins[skin].joints.first());
+    let joint = part.skins.iter().flatten().next().and_then(|&skin| scene.skins[skin].joints.first());
     let from = joint.map_or(part.nodes[0], |&(node, _)| node);
     std::iter::successors(Some(from), |&node| scene.parent[node]).filter(|node| joints.contains(node)).last()
 }
@@ -109,7 +109,8 @@ pub fn ground<'a>(asset: &'a Asset, chosen: &[usize], times: f64) -> Option<(&'a
     names.into_iter().find_map(|name| {
         let (flat, rest): (Vec<&Part>, Vec<&Part>) = furred().partition(|part| part.material_name == name);
         let size = size_units(&flat, |_| true);
-        let apart = |part: &&Part| part.skin.is_none() && rest.iter().all(|other| other.mesh != part.mesh);
+        let apart =
+            |part: &&Part| part.skins.iter().all(Option::is_none) && rest.iter().all(|other| other.mesh != part.mesh);
         if rest.is_empty() || size.min_element() > FLAT * size.length() || !flat.iter().all(apart) {
             return None;
         }

@@ -12,6 +12,7 @@ use crate::data::film::Film;
 use crate::data::subject::Subject;
 use crate::error::Result;
 use crate::fur::groom::fibre::Fibre;
+use crate::fur::groom::refine::refine;
 use crate::fur::grow;
 use crate::hybrid::device::{self, Device, Drawn};
 use crate::hybrid::{self, Picture, Settings};
@@ -19,6 +20,9 @@ use crate::math::{DVec3, Vec3};
 use crate::preset::Preset;
 use crate::reference;
 use crate::volume::scene::{HairScattering, Lighting, Scene};
+
+/// The finest that what is painted is told apart in undercoat and skin, in parts of what is furred.
+const FINEST: f32 = 500.0;
 
 /// Which hair is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +99,18 @@ impl Grown {
         let hair_m = reaches_m(&asset, &whole, tile.height_m);
         let groomed = shown(&asset, whole, pose.as_ref(), scale.metres_per_unit)?;
         notes.extend(groomed.notes.iter().cloned());
-        let strands = grow::skin::grow(&fibre, groomed.mesh(), &groomed.fields, request.seed);
+        let mut groomed = groomed;
+        let mut strands = grow::skin::grow(&fibre, groomed.mesh(), &groomed.fields, request.seed);
+        if let Some(refined) = refine(groomed.mesh(), &groomed.fields, diagonal_m / FINEST) {
+            refined.move_roots(&mut strands.roots);
+            if refined.coarse {
+                notes.push(
+                    "a texture is finer than undercoat can show: its finest detail is seen on guard hair alone".into(),
+                );
+            }
+            groomed.skin.mesh = refined.mesh;
+            groomed.fields = refined.fields;
+        }
         Ok(Self {
             guard: (strands, fibre),
             undercoat,

@@ -40,7 +40,7 @@ pub struct Bake {
     #[arg(long = "set", value_name = "TABLE.KEY=VALUE")]
     settings: Vec<String>,
     /// Fur the material of this name; repeatable. Default: all but those named as eyes, nose, teeth, tongue, claws,
-    /// hooves, horns, pads or lashes
+    /// hooves, horns, pads, lashes or ground
     #[arg(long = "material", value_name = "NAME")]
     materials: Vec<String>,
     /// What one unit of the file is; auto takes what is furred to be as large as what the preset describes; where that is a small

@@ -53,6 +53,16 @@ impl Painted {
         self.colour.is_some() || self.maps.as_ref().is_some_and(|maps| !maps.is_empty())
     }
 
+    /// UV set and size of every picture in it; texture transforms scale sizes.
+    pub fn pictures(&self) -> impl Iterator<Item = (usize, [u32; 2])> {
+        let colour = self.colour.as_ref().map(|(texture, image)| {
+            let scaled = |size: u32, scale: f32| (size as f32 * scale.abs()).round() as u32;
+            (texture.uv_set, [scaled(image.width, texture.scale.x), scaled(image.height, texture.scale.y)])
+        });
+        let maps = self.maps.iter().flat_map(|maps| [&maps.density, &maps.length, &maps.comb, &maps.clump]);
+        colour.into_iter().chain(maps.flatten().map(|image| (0, [image.width, image.height])))
+    }
+
     fn map(&self, of: impl Fn(&Maps) -> &Option<Image8>, uv: Vec2) -> Option<Vec4> {
         let maps = self.maps.as_ref()?;
         of(maps).as_ref().map(|image| sample(image, uv))

@@ -7,6 +7,7 @@ pub mod fields;
 pub mod hair;
 pub mod lean;
 pub mod maps;
+pub mod refine;
 pub mod unfold;
 
 use crate::math::Vec3;

@@ -1,0 +1,411 @@
+//! A skin cut so finely that its vertices tell what is painted on it (`docs/steps/paint.md`): what fills the shell is interpolated
+//! between vertices, on every device and in the reference alike.
+
+use crate::data::fields::Fields;
+use crate::data::mesh::Mesh;
+use crate::data::paint::{Paint, PaintedPoint};
+use crate::data::strands::Root;
+use crate::math::{Vec2, Vec3};
+use rayon::prelude::*;
+use std::collections::{HashMap, HashSet};
+
+/// How far what is painted may be off what lies between the vertices: as a share of full density, length or brightness.
+const CLOSE: f32 = 0.04;
+/// Points along an edge at which the two are compared, at most.
+const MOST_POINTS: u32 = 12;
+/// Edges are not cut to less than this share of a texel: between texels nothing is told apart.
+const OF_TEXEL: f32 = 0.5;
+/// Most triangles that are made.
+const MOST_TRIANGLES: usize = 400_000;
+
+/// Some triangle of the skin before it was cut, and a point of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Origin {
+    /// The triangle.
+    pub triangle: u32,
+    /// Barycentric coordinates.
+    pub b: Vec3,
+}
+
+/// A skin that was cut.
+#[derive(Clone, Debug)]
+pub struct Refined {
+    /// Its mesh.
+    pub mesh: Mesh,
+    /// The fields on it, without paint: vertices hold it.
+    pub fields: Fields,
+    /// Per vertex, where it lies on the skin before.
+    pub origin: Vec<Origin>,
+    /// Per triangle, which of the skin's it is a piece of.
+    pub piece_of: Vec<u32>,
+    /// Whether there is more to see than could be cut out.
+    pub coarse: bool,
+    /// Triangles as they were cut: the first are the skin's, pieces follow in the order of cutting.
+    cuts: Vec<Cut>,
+    /// Vertices in the middle of edges, by their ends.
+    middles: HashMap<[u32; 2], u32>,
+}
+
+/// A triangle, whole or cut.
+#[derive(Clone, Debug)]
+struct Cut {
+    corners: [u32; 3],
+    parent: u32,
+    /// Its pieces, or none.
+    pieces: Vec<u32>,
+}
+
+/// Cuts triangles on which what is painted differs from what lies between their vertices, down to edges of `least_m`; `None` where
+/// none does. A posed mesh is cut as in its rest pose.
+pub fn refine(mesh: &Mesh, fields: &Fields, least_m: f32) -> Option<Refined> {
+    let paint = fields.paint.as_deref()?;
+    let skin = Painting { mesh, fields, paint };
+    let mut cutter = Cutter::new(skin, least_m);
+    while cutter.round() {}
+    if cutter.cuts.len() == mesh.triangles.len() { None } else { Some(cutter.finish()) }
+}
+
+/// A skin with what is painted on it.
+#[derive(Clone, Copy)]
+struct Painting<'a> {
+    mesh: &'a Mesh,
+    fields: &'a Fields,
+    paint: &'a Paint,
+}
+
+impl Painting<'_> {
+    /// About how far the finest texels on a triangle are apart, m.
+    fn texel_m(&self, t: usize) -> f32 {
+        let corners = self.mesh.triangles[t].map(|v| v as usize);
+        let texels = |set: usize, [width, height]: [u32; 2]| {
+            let Some(uv) = self.mesh.uv_sets.get(set) else { return 0.0 };
+            let [p, q, r] = corners.map(|v| uv[v] * Vec2::new(width as f32, height as f32));
+            0.5 * (q - p).perp_dot(r - p).abs()
+        };
+        let most = self.paint.of(self.mesh, t).pictures().map(|(set, size)| texels(set, size)).fold(0.0, f32::max);
+        (self.mesh.rest_area_m2(t) / most.max(f32::MIN_POSITIVE)).sqrt()
+    }
+
+    /// What is painted at a point, its length as hair has it.
+    fn at(&self, origin: Origin) -> PaintedPoint {
+        let t = origin.triangle as usize;
+        let point = self.paint.at(self.mesh, t, origin.b);
+        let corners = self.mesh.triangles[t].map(|v| v as usize);
+        let length = Vec3::from(corners.map(|v| self.fields.length[v])).dot(origin.b);
+        let density = if self.paint.of(self.mesh, t).bare { 0.0 } else { point.density };
+        PaintedPoint { length: length * self.paint.share_of_longest(self.mesh, t, origin.b, &point), density, ..point }
+    }
+}
+
+/// The greatest difference of two points.
+fn apart(a: &PaintedPoint, b: &PaintedPoint) -> f32 {
+    let tint = (a.tint - b.tint).abs().max_element();
+    tint.max((a.density - b.density).abs()).max((a.length - b.length).abs()).max((a.clump - b.clump).abs())
+}
+
+fn between(points: [&PaintedPoint; 3], b: Vec3) -> PaintedPoint {
+    let mix = |of: fn(&PaintedPoint) -> f32| Vec3::from(points.map(of)).dot(b);
+    PaintedPoint {
+        tint: points[0].tint * b.x + points[1].tint * b.y + points[2].tint * b.z,
+        density: mix(|p| p.density),
+        length: mix(|p| p.length),
+        clump: mix(|p| p.clump),
+    }
+}
+
+struct Cutter<'a> {
+    skin: Painting<'a>,
+    least_m: f32,
+    /// Per triangle of the skin, about how far its texels are apart.
+    texel_m: Vec<f32>,
+    cuts: Vec<Cut>,
+    /// Triangles of the last round.
+    fresh: Vec<u32>,
+    origin: Vec<Origin>,
+    /// Of the vertices.
+    painted: Vec<PaintedPoint>,
+    class: Vec<u32>,
+    /// Vertices in the middle of edges, by their ends.
+    middles: HashMap<[u32; 2], u32>,
+    /// The first vertex in the middle of an edge between two places.
+    places: HashMap<[u32; 2], u32>,
+    coarse: bool,
+    whole: usize,
+}
+
+impl<'a> Cutter<'a> {
+    fn new(skin: Painting<'a>, least_m: f32) -> Self {
+        let mesh = skin.mesh;
+        let mut origin = vec![Origin { triangle: 0, b: Vec3::ZERO }; mesh.positions_m.len()];
+        for (t, triangle) in mesh.triangles.iter().enumerate() {
+            for (k, &v) in triangle.iter().enumerate() {
+                let mut b = Vec3::ZERO;
+                b[k] = 1.0;
+                origin[v as usize] = Origin { triangle: t as u32, b };
+            }
+        }
+        let cut = |(t, &corners): (usize, &[u32; 3])| Cut { corners, parent: t as u32, pieces: Vec::new() };
+        Self {
+            skin,
+            least_m,
+            texel_m: (0..mesh.triangles.len()).map(|t| skin.texel_m(t)).collect(),
+            cuts: mesh.triangles.iter().enumerate().map(cut).collect(),
+            fresh: (0..mesh.triangles.len() as u32).collect(),
+            painted: origin.par_iter().map(|&origin| skin.at(origin)).collect(),
+            origin,
+            class: mesh.position_class.clone(),
+            middles: HashMap::new(),
+            places: HashMap::new(),
+            coarse: false,
+            whole: mesh.triangles.len(),
+        }
+    }
+
+    fn rest_m(&self, v: u32) -> Vec3 {
+        let Origin { triangle, b } = self.origin[v as usize];
+        let [p, q, r] = self.skin.mesh.rest_corners_m(triangle as usize);
+        p * b.x + q * b.y + r * b.z
+    }
+
+    /// The edges of a triangle, by the places of their ends.
+    fn edges(&self, cut: &Cut) -> [[u32; 2]; 3] {
+        std::array::from_fn(|k| {
+            let [a, b] = [cut.corners[k], cut.corners[(k + 1) % 3]].map(|v| self.class[v as usize]);
+            [a.min(b), a.max(b)]
+        })
+    }
+
+    /// Where in its skin triangle a corner of a piece lies.
+    fn corner(&self, cut: &Cut, k: usize) -> Vec3 {
+        let v = cut.corners[k];
+        let Origin { triangle, b } = self.origin[v as usize];
+        if triangle == cut.parent {
+            return b;
+        }
+        // It was made for a neighbour: the same point of the edge between them.
+        let mesh = self.skin.mesh;
+        let corners = mesh.triangles[cut.parent as usize];
+        let mut own = Vec3::ZERO;
+        for (j, &w) in mesh.triangles[triangle as usize].iter().enumerate() {
+            let place = mesh.position_class[w as usize];
+            if let Some(i) = corners.iter().position(|&c| c == w || mesh.position_class[c as usize] == place) {
+                own[i] += b[j];
+            }
+        }
+        own
+    }
+
+    /// Whether what is painted shows between a triangle's vertices.
+    fn shows(&self, cut: &Cut) -> bool {
+        let painted = self.skin.paint.of(self.skin.mesh, cut.parent as usize);
+        if !painted.varies() {
+            return false;
+        }
+        let places = cut.corners.map(|v| self.rest_m(v));
+        let longest_m = (0..3).map(|k| places[k].distance(places[(k + 1) % 3])).fold(0.0, f32::max);
+        let least_m = self.least_m.max(OF_TEXEL * self.texel_m[cut.parent as usize]);
+        if longest_m < 2.0 * least_m {
+            return false;
+        }
+        let b = [0, 1, 2].map(|k| self.corner(cut, k));
+        let values = cut.corners.map(|v| &self.painted[v as usize]);
+        let points = ((longest_m / least_m).ceil() as u32).clamp(2, MOST_POINTS);
+        (0..=points).any(|i| {
+            (0..=points - i).any(|j| {
+                let at = Vec3::new(i as f32, j as f32, (points - i - j) as f32) / points as f32;
+                let origin = Origin { triangle: cut.parent, b: b[0] * at.x + b[1] * at.y + b[2] * at.z };
+                apart(&self.skin.at(origin), &between(values, at)) > CLOSE
+            })
+        })
+    }
+
+    /// Cuts what shows in the triangles of the last round, and what lies across their edges; whether anything was cut.
+    fn round(&mut self) -> bool {
+        let wanted: Vec<u32> = self.fresh.par_iter().copied().filter(|&t| self.shows(&self.cuts[t as usize])).collect();
+        if wanted.is_empty() {
+            return false;
+        }
+        if self.whole + 3 * wanted.len() > MOST_TRIANGLES {
+            self.coarse = true;
+            return false;
+        }
+        let marked: HashSet<[u32; 2]> = wanted.iter().flat_map(|&t| self.edges(&self.cuts[t as usize])).collect();
+        self.fresh.clear();
+        for t in 0..self.cuts.len() {
+            if !self.cuts[t].pieces.is_empty() {
+                continue;
+            }
+            let cut = self.edges(&self.cuts[t]).map(|edge| marked.contains(&edge));
+            if cut.contains(&true) {
+                self.cut(t, cut);
+            }
+        }
+        true
+    }
+
+    fn cut(&mut self, t: usize, marked: [bool; 3]) {
+        let whole = self.cuts[t].clone();
+        let corner = |k: usize| whole.corners[k % 3];
+        let middle = |k: usize, this: &mut Self| this.middle(&whole, k % 3);
+        // Turned so that the case is one of three.
+        let count = marked.iter().filter(|m| **m).count();
+        let pieces: Vec<[u32; 3]> = match count {
+            3 => {
+                let [p, q, r] = [0, 1, 2].map(|k| middle(k, self));
+                vec![[corner(0), p, r], [p, corner(1), q], [r, q, corner(2)], [p, q, r]]
+            }
+            2 => {
+                // The edge that stays whole comes last.
+                let k = marked.iter().position(|m| !m).unwrap_or(0) + 1;
+                let (p, q) = (middle(k, self), middle(k + 1, self));
+                vec![[p, corner(k + 1), q], [corner(k), p, q], [corner(k), q, corner(k + 2)]]
+            }
+            _ => {
+                let k = marked.iter().position(|m| *m).unwrap_or(0);
+                let p = middle(k, self);
+                vec![[corner(k), p, corner(k + 2)], [p, corner(k + 1), corner(k + 2)]]
+            }
+        };
+        self.whole += pieces.len() - 1;
+        for corners in pieces {
+            let number = self.cuts.len() as u32;
+            self.cuts[t].pieces.push(number);
+            self.fresh.push(number);
+            self.cuts.push(Cut { corners, parent: whole.parent, pieces: Vec::new() });
+        }
+    }
+
+    /// The vertex in the middle of edge `k` of a triangle.
+    fn middle(&mut self, cut: &Cut, k: usize) -> u32 {
+        let ends = [cut.corners[k], cut.corners[(k + 1) % 3]];
+        let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        if let Some(&known) = self.middles.get(&key) {
+            return known;
+        }
+        let b = 0.5 * (self.corner(cut, k) + self.corner(cut, (k + 1) % 3));
+        let number = self.origin.len() as u32;
+        let origin = Origin { triangle: cut.parent, b };
+        self.origin.push(origin);
+        self.painted.push(self.skin.at(origin));
+        let places = ends.map(|v| self.class[v as usize]);
+        let place = *self.places.entry([places[0].min(places[1]), places[0].max(places[1])]).or_insert(number);
+        self.class.push(place);
+        self.middles.insert(key, number);
+        number
+    }
+
+    fn finish(self) -> Refined {
+        let Painting { mesh, fields, .. } = self.skin;
+        let at3 = |list: &[Vec3], origin: &Origin| {
+            let [p, q, r] = mesh.triangles[origin.triangle as usize].map(|v| list[v as usize]);
+            p * origin.b.x + q * origin.b.y + r * origin.b.z
+        };
+        let all3 = |list: &[Vec3]| -> Vec<Vec3> { self.origin.iter().map(|origin| at3(list, origin)).collect() };
+        let unit =
+            |list: &[Vec3]| -> Vec<Vec3> { all3(list).into_iter().map(|v| v.normalize_or(Vec3::ZERO)).collect() };
+        let all2 = |list: &Vec<Vec2>| -> Vec<Vec2> {
+            let at = |origin: &Origin| {
+                let [p, q, r] = mesh.triangles[origin.triangle as usize].map(|v| list[v as usize]);
+                p * origin.b.x + q * origin.b.y + r * origin.b.z
+            };
+            self.origin.iter().map(at).collect()
+        };
+        let pieces: Vec<&Cut> = self.cuts.iter().filter(|cut| cut.pieces.is_empty()).collect();
+        let normals = unit(&mesh.smooth_normals());
+        let mesh = Mesh {
+            origin_m: mesh.origin_m,
+            positions_m: all3(&mesh.positions_m),
+            rest_m: mesh.rest_m.as_deref().map(all3),
+            normals: normals.clone(),
+            hair_normals: Some(normals),
+            triangles: pieces.iter().map(|cut| cut.corners).collect(),
+            face_seeds: Vec::new(),
+            position_class: self.class.clone(),
+            uv_sets: mesh.uv_sets.iter().map(all2).collect(),
+            ..Mesh::default()
+        };
+        let fields = Fields {
+            length: self.painted.iter().map(|p| p.length).collect(),
+            density: self.painted.iter().map(|p| p.density).collect(),
+            direction: unit(&fields.direction),
+            lean: unit(&fields.lean),
+            clump: self.painted.iter().map(|p| p.clump).collect(),
+            tint: self.painted.iter().map(|p| p.tint).collect(),
+            paint: None,
+        };
+        Refined {
+            mesh,
+            fields,
+            piece_of: pieces.iter().map(|cut| cut.parent).collect(),
+            origin: self.origin,
+            coarse: self.coarse,
+            cuts: self.cuts,
+            middles: self.middles,
+        }
+    }
+}
+
+impl Refined {
+    /// Takes roots on the skin before to the pieces that they lie on.
+    pub fn move_roots(&self, roots: &mut [Root]) {
+        let mut number = vec![0; self.cuts.len()];
+        self.cuts
+            .iter()
+            .enumerate()
+            .filter(|(_, cut)| cut.pieces.is_empty())
+            .zip(0..)
+            .for_each(|((t, _), n)| number[t] = n);
+        roots.par_iter_mut().for_each(|root| {
+            let [x, y] = root.barycentric;
+            let (mut at, mut b) = (root.triangle as usize, Vec3::new(x, y, 1.0 - x - y));
+            while let Some((piece, inner)) = self.piece_at(at, b) {
+                (at, b) = (piece, inner);
+            }
+            *root = Root { triangle: number[at], barycentric: [b.x, b.y] };
+        });
+    }
+
+    /// The piece of a triangle that a point of it lies on, and where; `None` where it is whole.
+    fn piece_at(&self, t: usize, b: Vec3) -> Option<(usize, Vec3)> {
+        let whole = &self.cuts[t];
+        let inside = |piece: &u32| {
+            let corners = self.cuts[*piece as usize].corners;
+            // Corners of pieces are corners of the whole, or lie in the middle of its edges.
+            let of = corners.map(|v| self.within(whole, v));
+            (*piece as usize, barycentric(of, b))
+        };
+        let least = |(_, b): &(usize, Vec3)| b.min_element();
+        let found = whole.pieces.iter().map(inside).max_by(|a, b| least(a).total_cmp(&least(b)))?;
+        let clamped = found.1.max(Vec3::ZERO);
+        Some((found.0, clamped / clamped.element_sum().max(f32::MIN_POSITIVE)))
+    }
+
+    /// A vertex of a triangle's pieces in its barycentric coordinates.
+    fn within(&self, whole: &Cut, v: u32) -> Vec3 {
+        let mut b = Vec3::ZERO;
+        if let Some(k) = whole.corners.iter().position(|&corner| corner == v) {
+            b[k] = 1.0;
+            return b;
+        }
+        for k in 0..3 {
+            let [p, q] = [whole.corners[k], whole.corners[(k + 1) % 3]];
+            if self.middle_of(p, q) == Some(v) {
+                (b[k], b[(k + 1) % 3]) = (0.5, 0.5);
+            }
+        }
+        b
+    }
+
+    fn middle_of(&self, p: u32, q: u32) -> Option<u32> {
+        self.middles.get(&[p.min(q), p.max(q)]).copied()
+    }
+}
+
+/// A point's coordinates in the triangle between three others, all in coordinates of one triangle.
+fn barycentric([p, q, r]: [Vec3; 3], at: Vec3) -> Vec3 {
+    let flat = |v: Vec3| Vec2::new(v.x, v.y);
+    let (a, b, c) = (flat(q - p), flat(r - p), flat(at - p));
+    let area = a.perp_dot(b);
+    let (v, w) = (c.perp_dot(b) / area, a.perp_dot(c) / area);
+    Vec3::new(1.0 - v - w, v, w)
+}
