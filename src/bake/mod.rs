@@ -2,6 +2,7 @@
 
 mod atlas;
 mod comb;
+mod cut;
 mod extent;
 pub mod picture;
 mod regions;
@@ -20,7 +21,7 @@ use crate::coat::primitive::{Local, coat_primitive};
 use crate::coat::seams::{WINDOWS, before_after};
 use crate::coat::summary::draw_calls_note;
 use crate::coat::tile::{TileRecipe, bake as bake_tile};
-use crate::data::coat::{Blend, Coat, CoatPrimitive, Tile};
+use crate::data::coat::{Blend, Coat, CoatPrimitive, Sampled, Tile};
 use crate::data::fields::Fields;
 use crate::data::patches::Patches;
 use crate::error::{Error, Result};
@@ -294,7 +295,14 @@ impl Task<'_> {
         let base_vertex = carried.base_vertex.iter().map(|&v| stored(v as usize) as u32).collect();
         let whole = CoatPrimitive { mesh: at.mesh, primitive: at.primitive, base_vertex, ..carried };
         match &fields.paint {
-            Some(paint) => self.textures.painted(whole, paint, part, &patches.base_vertex),
+            Some(paint) => {
+                let vertices = &patches.base_vertex;
+                let painted = self.textures.painted(whole, paint, part, vertices);
+                let wanted = self.request.fallback != Fallback::None && tile.sampled == Sampled::Square;
+                let (diagonal_m, unit_m) = (self.scale.diagonal_m as f32, self.scale.metres_per_unit);
+                let cut = wanted.then(|| cut::cut(at, part, &painted, paint, vertices, diagonal_m, unit_m)).flatten();
+                CoatPrimitive { cut, ..painted }
+            }
             None => whole,
         }
     }

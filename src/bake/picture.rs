@@ -12,7 +12,7 @@ use crate::data::film::Film;
 use crate::data::subject::Subject;
 use crate::error::Result;
 use crate::fur::groom::fibre::Fibre;
-use crate::fur::groom::refine::refine;
+use crate::fur::groom::refine::{Finest, refine};
 use crate::fur::grow;
 use crate::hybrid::device::{self, Device, Drawn};
 use crate::hybrid::{self, Picture, Settings};
@@ -23,6 +23,8 @@ use crate::volume::scene::{HairScattering, Lighting, Scene};
 
 /// The finest that what is painted is told apart in undercoat and skin, in parts of what is furred.
 const FINEST: f32 = 500.0;
+/// Most triangles that the skin is cut into for it.
+const MOST_TRIANGLES: usize = 400_000;
 
 /// Which hair is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,8 +102,9 @@ impl Grown {
         let groomed = shown(&asset, whole, pose.as_ref(), scale.metres_per_unit)?;
         notes.extend(groomed.notes.iter().cloned());
         let mut groomed = groomed;
+        let finest = Finest { edge_m: diagonal_m / FINEST, triangles: MOST_TRIANGLES };
         let mut strands = grow::skin::grow(&fibre, groomed.mesh(), &groomed.fields, request.seed);
-        if let Some(refined) = refine(groomed.mesh(), &groomed.fields, diagonal_m / FINEST) {
+        if let Some(refined) = refine(groomed.mesh(), &groomed.fields, finest) {
             refined.move_roots(&mut strands.roots);
             if refined.coarse {
                 notes.push(

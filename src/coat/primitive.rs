@@ -64,5 +64,6 @@ pub fn coat_primitive(
         colour: None,
         painted: None,
         longest: Vec::new(),
+        cut: None,
     }
 }

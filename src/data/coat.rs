@@ -125,6 +125,20 @@ pub struct CoatPrimitive {
     pub fins: Vec<FinEdge>,
     /// The tile that it passes into, where it does.
     pub blend: Option<Blend>,
+    /// The same triangles cut so finely that vertices tell the colours, for programs that know vertex colours alone; it is in
+    /// no file but as fallback shells.
+    pub cut: Option<Cut>,
+}
+
+/// A coat primitive's triangles, cut.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cut {
+    /// Per vertex: three coat vertices and their shares, which sum to 1.
+    pub inside: Vec<([u32; 3], [f32; 3])>,
+    /// Per vertex: colour of the hair (linear RGB) and density factor.
+    pub tint: Vec<Vec4>,
+    /// Vertex indices.
+    pub triangles: Vec<[u32; 3]>,
 }
 
 /// A passage from a coat primitive's tile into another with equally many layers: both are there on the same shells, and with weight w
@@ -179,6 +193,7 @@ impl CoatPrimitive {
             longest: old.iter().filter_map(|&v| self.longest.get(v).copied()).collect(),
             colour: self.colour.clone(),
             painted: self.painted.clone(),
+            cut: None,
             tint: old.iter().map(|&v| self.tint[v]).collect(),
             triangles: triangles.iter().map(|t| t.map(of)).collect(),
             fins: self.fins.iter().filter(whole).map(moved).collect(),
@@ -186,7 +201,9 @@ impl CoatPrimitive {
                 .blend
                 .as_ref()
                 .map(|blend| Blend { tile: blend.tile, weight: old.iter().map(|&v| blend.weight[v]).collect() }),
-            ..*self
+            mesh: self.mesh,
+            primitive: self.primitive,
+            tile: self.tile,
         }
     }
 }

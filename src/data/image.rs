@@ -1,5 +1,7 @@
 //! Eight-bit images, as they come from and go to files.
 
+use std::sync::LazyLock;
+
 /// Pixels in rows from the top, `channels` bytes each. Transfer function and meaning are the owner's.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image8 {
@@ -30,6 +32,13 @@ impl Image8 {
 /// One sRGB-coded value in [0, 1] to linear (IEC 61966-2-1).
 pub fn linear_from_srgb(value: f32) -> f32 {
     if value <= 0.040_45 { value / 12.92 } else { libm::powf((value + 0.055) / 1.055, 2.4) }
+}
+
+/// The same of a byte.
+pub fn linear_from_srgb8(byte: u8) -> f32 {
+    static TABLE: LazyLock<[f32; 256]> =
+        LazyLock::new(|| std::array::from_fn(|byte| linear_from_srgb(byte as f32 / 255.0)));
+    TABLE[usize::from(byte)]
 }
 
 /// One linear value in [0, 1] to sRGB coding (IEC 61966-2-1).

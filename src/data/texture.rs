@@ -1,6 +1,6 @@
 //! How an image is laid on a surface, and what it shows there.
 
-use super::image::{Image8, linear_from_srgb};
+use super::image::{Image8, linear_from_srgb8};
 use crate::math::{Vec2, Vec4};
 
 /// A texture of a glTF file, as a material or a coat names it.
@@ -50,7 +50,7 @@ impl Texture {
     /// The texture at the mesh's texture coordinate `uv`, bilinear, linear RGBA; `image` is its decoded image in sRGB coding.
     pub fn sample(&self, image: &Image8, uv: Vec2) -> Vec4 {
         bilinear(image, self.transformed(uv), self.wrap, |p| {
-            let c = |i: usize| linear_from_srgb(f32::from(p[i]) / 255.0);
+            let c = |i: usize| linear_from_srgb8(p[i]);
             Vec4::new(c(0), c(1), c(2), f32::from(p[3]) / 255.0)
         })
     }

@@ -8,11 +8,13 @@ use crate::asset::encode::Use;
 use crate::asset::image::png;
 use crate::asset::json::At;
 use crate::asset::pose::turn;
+use crate::asset::stored::Influences;
 use crate::asset::{Asset, Part};
-use crate::data::coat::{Coat, CoatPrimitive, Sampled};
+use crate::data::coat::{Coat, CoatPrimitive, Cut, Sampled};
 use crate::error::Result;
 use crate::math::{Vec3, Vec4};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 /// What viewers without the extension get to see.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,29 +113,59 @@ fn stack(
     materials: &[usize],
     tinted: bool,
 ) -> Result<Vec<Value>> {
-    let (n, shells) = (coat_primitive.base_vertex.len(), materials.len());
+    let whole = || Cut {
+        inside: (0..coat_primitive.base_vertex.len() as u32).map(|v| ([v; 3], [1.0, 0.0, 0.0])).collect(),
+        tint: coat_primitive.tint.clone(),
+        triangles: coat_primitive.triangles.clone(),
+    };
+    let cut = coat_primitive.cut.clone().unwrap_or_else(whole);
+    let (n, shells) = (cut.inside.len(), materials.len());
     let vertices = || (0..shells).flat_map(|shell| (0..n).map(move |v| ((shell as f32 + 0.5) / shells as f32, v)));
-    let base = |v: usize| coat_primitive.base_vertex[v] as usize;
-    let positions: Vec<Vec3> =
-        vertices().map(|(h, v)| part.stored.positions[base(v)] + h * coat_primitive.offset[v]).collect();
-    let normals: Vec<Vec3> = vertices().map(|(_, v)| part.stored.normals[base(v)]).collect();
-    let uvs: Vec<_> = vertices().map(|(_, v)| coat_primitive.uv[v]).collect();
+    let base = |v: u32| coat_primitive.base_vertex[v as usize] as usize;
+    let mixed = |v: usize, of: &dyn Fn(u32) -> Vec3| -> Vec3 {
+        let (corners, shares) = cut.inside[v];
+        corners
+            .into_iter()
+            .zip(shares)
+            .filter(|(_, share)| *share > 0.0)
+            .map(|(corner, share)| of(corner) * share)
+            .sum()
+    };
+    let normal = |v: u32| coat_primitive.normal.get(v as usize).copied().unwrap_or(part.stored.normals[base(v)]);
+    let place = |h: f32, v: u32| part.stored.positions[base(v)] + h * coat_primitive.offset[v as usize];
+    let positions: Vec<Vec3> = vertices().map(|(h, v)| mixed(v, &|corner| place(h, corner))).collect();
+    let normals: Vec<Vec3> = vertices().map(|(_, v)| mixed(v, &normal).normalize_or(Vec3::Y)).collect();
+    let uv = |v: usize| mixed(v, &|corner| coat_primitive.uv[corner as usize].extend(0.0)).truncate();
+    let uvs: Vec<_> = vertices().map(|(_, v)| uv(v)).collect();
     let mut attributes = json!({
         "POSITION": document.push_positions(&positions, Use::Vertices),
         "NORMAL": document.push_vec3(&normals, Use::Vertices),
         "TEXCOORD_0": document.push_vec2(&uvs, Use::Vertices),
     });
-    if tinted && coat_primitive.tint.iter().any(|tint| *tint != Vec4::ONE) {
-        let tints: Vec<Vec4> = vertices().map(|(_, v)| coat_primitive.tint[v].clamp(Vec4::ZERO, Vec4::ONE)).collect();
+    if tinted && cut.tint.iter().any(|tint| *tint != Vec4::ONE) {
+        let tints: Vec<Vec4> = vertices().map(|(_, v)| cut.tint[v].clamp(Vec4::ZERO, Vec4::ONE)).collect();
         attributes["COLOR_0"] = json!(document.push_vec4(&tints, Use::Vertices));
     }
-    let indices_of: Vec<usize> = vertices().map(|(_, v)| base(v)).collect();
-    let stored_of: Vec<usize> = indices_of.iter().map(|&v| part.stored.source[v] as usize).collect();
     if part.skins.iter().any(Option::is_some) {
-        let primitive = asset.document.root().entry("meshes", part.mesh)?.entry("primitives", part.primitive)?;
-        for (name, at) in primitive.need("attributes")?.members()? {
-            if name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_") {
-                attributes[name] = json!(copy_elements(document, &asset.document, &at, &stored_of)?);
+        match (&coat_primitive.cut, &part.stored.influences) {
+            (Some(_), Some(influences)) => {
+                let of = |v: usize| mixed_influences(cut.inside[v], |corner| &influences[base(corner)]);
+                let all: Vec<[(u16, f32); 4]> = vertices().map(|(_, v)| of(v)).collect();
+                let joints: Vec<u8> = all.iter().flatten().flat_map(|(joint, _)| joint.to_le_bytes()).collect();
+                let weights: Vec<f32> = all.iter().flatten().map(|(_, weight)| *weight).collect();
+                attributes["JOINTS_0"] = json!(document.push_accessor(&joints, "VEC4", 5123, all.len(), Use::Vertices));
+                attributes["WEIGHTS_0"] = json!(document.push_floats(&weights, 4, Use::Vertices));
+            }
+            _ => {
+                let stored: Vec<usize> =
+                    vertices().map(|(_, v)| part.stored.source[base(cut.inside[v].0[0])] as usize).collect();
+                let primitive =
+                    asset.document.root().entry("meshes", part.mesh)?.entry("primitives", part.primitive)?;
+                for (name, at) in primitive.need("attributes")?.members()? {
+                    if name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_") {
+                        attributes[name] = json!(copy_elements(document, &asset.document, &at, &stored)?);
+                    }
+                }
             }
         }
     }
@@ -141,17 +173,16 @@ fn stack(
     for morph in &part.stored.morphs {
         let change = |list: &[Vec3], v: usize| list.get(v).copied().unwrap_or(Vec3::ZERO);
         let mut target = json!({});
-        let moved: Vec<Vec3> = vertices()
-            .map(|(h, v)| {
-                let rest = part.stored.normals[base(v)].as_dvec3();
-                let morphed = (rest + change(&morph.normals, base(v)).as_dvec3()).try_normalize().unwrap_or(rest);
-                let offset = coat_primitive.offset[v].as_dvec3();
-                change(&morph.positions, base(v)) + h * (turn(rest, morphed) * offset - offset).as_vec3()
-            })
-            .collect();
-        target["POSITION"] = json!(document.push_positions(&moved, Use::Vertices));
+        let moved = |h: f32, v: u32| {
+            let rest = part.stored.normals[base(v)].as_dvec3();
+            let morphed = (rest + change(&morph.normals, base(v)).as_dvec3()).try_normalize().unwrap_or(rest);
+            let offset = coat_primitive.offset[v as usize].as_dvec3();
+            change(&morph.positions, base(v)) + h * (turn(rest, morphed) * offset - offset).as_vec3()
+        };
+        let all: Vec<Vec3> = vertices().map(|(h, v)| mixed(v, &|corner| moved(h, corner))).collect();
+        target["POSITION"] = json!(document.push_positions(&all, Use::Vertices));
         if !morph.normals.is_empty() {
-            let turned: Vec<Vec3> = indices_of.iter().map(|&v| morph.normals[v]).collect();
+            let turned: Vec<Vec3> = vertices().map(|(_, v)| mixed(v, &|corner| morph.normals[base(corner)])).collect();
             target["NORMAL"] = json!(document.push_vec3(&turned, Use::Vertices));
         }
         targets.push(target);
@@ -161,7 +192,7 @@ fn stack(
     for (shell, material) in materials.iter().enumerate() {
         let corner = |v: u32| v + (shell * n) as u32;
         let turned = |t: &[u32; 3]| if mirrored { [t[0], t[2], t[1]] } else { *t };
-        let indices: Vec<u32> = coat_primitive.triangles.iter().flat_map(turned).map(corner).collect();
+        let indices: Vec<u32> = cut.triangles.iter().flat_map(turned).map(corner).collect();
         let mut primitive = json!({
             "attributes": attributes,
             "indices": document.push_integers(&indices, 1, Use::Indices),
@@ -173,6 +204,26 @@ fn stack(
         primitives.push(primitive);
     }
     Ok(primitives)
+}
+
+/// Joints and weights between three vertices: the four that count most, their weights scaled to sum to 1.
+fn mixed_influences<'a>(
+    (corners, shares): ([u32; 3], [f32; 3]),
+    of: impl Fn(u32) -> &'a Influences,
+) -> [(u16, f32); 4] {
+    let mut sums: BTreeMap<u16, f32> = BTreeMap::new();
+    for (corner, share) in corners.into_iter().zip(shares).filter(|(_, share)| *share > 0.0) {
+        for &(joint, weight) in of(corner).iter().filter(|(_, weight)| *weight > 0.0) {
+            *sums.entry(joint).or_default() += share * weight;
+        }
+    }
+    let mut most: Vec<(u16, f32)> = sums.into_iter().collect();
+    most.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    most.truncate(4);
+    let total: f32 = most.iter().map(|(_, weight)| weight).sum();
+    let mut mixed = [(0, 0.0); 4];
+    most.into_iter().zip(&mut mixed).for_each(|((joint, weight), slot)| *slot = (joint, weight / total));
+    mixed
 }
 
 /// An accessor with the elements `of` another document's accessor, in their stored form.

@@ -34,6 +34,8 @@ struct Stand {
     root_m: Vec3,
     normal: Vec3,
     clump: f32,
+    /// Length over that of the offset.
+    share: f32,
 }
 
 /// Sums over a texel's places.
@@ -90,13 +92,24 @@ impl<'a> Ground<'a> {
             return None;
         }
         let normal = mix3(corners.map(|v| self.normals[v])).normalize_or(Vec3::Y);
-        Some(Stand {
+        let stand = Stand {
             texel,
             density: mix(&fields.density) * x.cross(y).length(),
             tint: mix3(corners.map(|v| fields.tint[v])),
             root_m: mix3(corners_m),
             normal,
             clump: mix(&fields.clump),
+            share: 1.0,
+        };
+        let Some(paint) = &fields.paint else { return Some(stand) };
+        let point = paint.at(mesh, placed.triangle, share);
+        let longest = paint.share_of_longest(mesh, placed.triangle, share, &point);
+        (longest > 0.0).then_some(Stand {
+            density: point.density * x.cross(y).length(),
+            tint: point.tint,
+            clump: point.clump,
+            share: longest,
+            ..stand
         })
     }
 }
@@ -106,6 +119,13 @@ struct Crowd<'a> {
     undercoat: &'a Undercoat,
     stands: &'a [Stand],
     width: usize,
+}
+
+impl Crowd<'_> {
+    /// Hairs that reach a height of their own over those that a stack of full length has at height `t`.
+    fn left(&self, t: f32, own: f32) -> f32 {
+        self.undercoat.reaching(own) / self.undercoat.reaching(t).max(1e-3)
+    }
 }
 
 impl lanes::Work for Crowd<'_> {
@@ -128,10 +148,17 @@ impl lanes::Work for Crowd<'_> {
             }
             let (root_m, normal) = (Vec3s::<I>::of(&root_m), Vec3s::of(&normal));
             let columns = self.undercoat.columns(&mut nearby, root_m, normal, F32s::of(&clump));
+            let mut share = Row::default();
+            some.iter().zip(&mut share.0).for_each(|(stand, share)| *share = stand.share);
+            let squeeze = F32s::splat(1.0) / F32s::of(&share);
             for layer in 0..LAYERS {
-                let crowding = columns.crowdings(F32s::splat((layer as f32 + 0.5) / LAYERS as f32)).row();
+                // Shorter hair has the same crowding lower down, and ends there.
+                let t = (layer as f32 + 0.5) / LAYERS as f32;
+                let own = (squeeze * t).min(F32s::splat(1.0));
+                let crowding = columns.crowdings(own).row();
                 for (stand, crowding) in some.iter().zip(crowding.0) {
-                    sums[stand.texel].by_height[layer] += stand.density * crowding;
+                    let left = if stand.share < 1.0 { self.left(t, t / stand.share) } else { 1.0 };
+                    sums[stand.texel].by_height[layer] += stand.density * crowding * left;
                 }
             }
         }

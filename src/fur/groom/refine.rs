@@ -15,8 +15,15 @@ const CLOSE: f32 = 0.04;
 const MOST_POINTS: u32 = 12;
 /// Edges are not cut to less than this share of a texel: between texels nothing is told apart.
 const OF_TEXEL: f32 = 0.5;
-/// Most triangles that are made.
-const MOST_TRIANGLES: usize = 400_000;
+
+/// How far a skin is cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Finest {
+    /// Edges are not cut to less than this, m.
+    pub edge_m: f32,
+    /// Most triangles that are made.
+    pub triangles: usize,
+}
 
 /// Some triangle of the skin before it was cut, and a point of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,12 +62,12 @@ struct Cut {
     pieces: Vec<u32>,
 }
 
-/// Cuts triangles on which what is painted differs from what lies between their vertices, down to edges of `least_m`; `None` where
+/// Cuts triangles on which what is painted differs from what lies between their vertices, as far as `finest` says; `None` where
 /// none does. A posed mesh is cut as in its rest pose.
-pub fn refine(mesh: &Mesh, fields: &Fields, least_m: f32) -> Option<Refined> {
+pub fn refine(mesh: &Mesh, fields: &Fields, finest: Finest) -> Option<Refined> {
     let paint = fields.paint.as_deref()?;
     let skin = Painting { mesh, fields, paint };
-    let mut cutter = Cutter::new(skin, least_m);
+    let mut cutter = Cutter::new(skin, finest);
     while cutter.round() {}
     if cutter.cuts.len() == mesh.triangles.len() { None } else { Some(cutter.finish()) }
 }
@@ -115,7 +122,7 @@ fn between(points: [&PaintedPoint; 3], b: Vec3) -> PaintedPoint {
 
 struct Cutter<'a> {
     skin: Painting<'a>,
-    least_m: f32,
+    finest: Finest,
     /// Per triangle of the skin, about how far its texels are apart.
     texel_m: Vec<f32>,
     cuts: Vec<Cut>,
@@ -134,7 +141,7 @@ struct Cutter<'a> {
 }
 
 impl<'a> Cutter<'a> {
-    fn new(skin: Painting<'a>, least_m: f32) -> Self {
+    fn new(skin: Painting<'a>, finest: Finest) -> Self {
         let mesh = skin.mesh;
         let mut origin = vec![Origin { triangle: 0, b: Vec3::ZERO }; mesh.positions_m.len()];
         for (t, triangle) in mesh.triangles.iter().enumerate() {
@@ -147,7 +154,7 @@ impl<'a> Cutter<'a> {
         let cut = |(t, &corners): (usize, &[u32; 3])| Cut { corners, parent: t as u32, pieces: Vec::new() };
         Self {
             skin,
-            least_m,
+            finest,
             texel_m: (0..mesh.triangles.len()).map(|t| skin.texel_m(t)).collect(),
             cuts: mesh.triangles.iter().enumerate().map(cut).collect(),
             fresh: (0..mesh.triangles.len() as u32).collect(),
@@ -203,7 +210,7 @@ impl<'a> Cutter<'a> {
         }
         let places = cut.corners.map(|v| self.rest_m(v));
         let longest_m = (0..3).map(|k| places[k].distance(places[(k + 1) % 3])).fold(0.0, f32::max);
-        let least_m = self.least_m.max(OF_TEXEL * self.texel_m[cut.parent as usize]);
+        let least_m = self.finest.edge_m.max(OF_TEXEL * self.texel_m[cut.parent as usize]);
         if longest_m < 2.0 * least_m {
             return false;
         }
@@ -225,7 +232,7 @@ impl<'a> Cutter<'a> {
         if wanted.is_empty() {
             return false;
         }
-        if self.whole + 3 * wanted.len() > MOST_TRIANGLES {
+        if self.whole + 3 * wanted.len() > self.finest.triangles {
             self.coarse = true;
             return false;
         }
