@@ -4,13 +4,18 @@
 #import furrier::light::light_at
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
 #import furrier::constants::{DEEPEST_HAIR, INVISIBLE, LEAST_CLEAR, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
-#import furrier::coat::{CoatVertex, Paint, Root, root_of, filled_slab, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
+#import furrier::coat::{CoatVertex, Paint, Root, root_of, Filled, filled_slab, Frame, Medium, Footprint, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
     lateral, shadow_slant, depth_of_opacity, presence, path_through_slab, footprint, fetch, run_through_slab, gain, medium_of, fin_share}
 
 // Which side of the shells this pass draws: the far one first, outer to inner, then the near one, inner to outer.
 override NEAR_SIDE: bool = true;
 // Whether fins are drawn too and take their share.
 override WITH_FINS: bool = true;
+// What is drawn: 0 hair; 1 the mean optical depth of a slab, added up in red; 2 on the skin itself that of all slabs, as they
+// would lie over it on a plane, in green, and 1 in blue.
+override DEPTHS: u32 = 0u;
+// Deeper is never seen through.
+const OPAQUE: f32 = 4.0;
 // Taps of the far side, which lies behind the near one and can do with fewer.
 const FAR_TAPS: f32 = 4.0;
 
@@ -83,13 +88,87 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
     // Which side is seen follows from the offsets, not from the winding, so mirrored parts need no care.
     let face = cross(edge_b, edge_c);
     let outwards = face * sign(dot(face, a.offset_m + b.offset_m + c.offset_m));
-    let seen_from_outside = dot(outwards, ray_direction(at_a)) < 0.0;
+    var seen_from_outside = dot(outwards, ray_direction(at_a)) < 0.0;
+    if DEPTHS == 2u {
+        // Hair that leans behind its skin counts as missing.
+        seen_from_outside = dot(a.normal + b.normal + c.normal, ray_direction(at_a)) < 0.0;
+    }
     if seen_from_outside == NEAR_SIDE && scale != 0.0 {
         out.clip = view.clip_from_world * vec4(out.position_m, 1.0);
     } else {
         out.clip = vec4(0.0, 0.0, -1.0, 1.0);
     }
     return out;
+}
+
+// How a coat lies at a pixel, and how it is seen.
+struct Place {
+    normal: vec3<f32>,
+    world_ray: vec3<f32>,
+    // The hair's frame.
+    at: Frame,
+    ray: Ray,
+    // The same ray as the texture is fetched along it.
+    sweep: Ray,
+    bend_per_m: f32,
+    uv: vec2<f32>,
+    uv_dx: vec2<f32>,
+    uv_dy: vec2<f32>,
+}
+
+// What a ray meets of a slab.
+struct Met {
+    // Optical depth at full density.
+    depth: f32,
+    medium: Medium,
+    // Where it is fetched.
+    uv: vec2<f32>,
+    round_level: f32,
+}
+
+fn place_of(in: Varyings, offset_m: vec3<f32>, uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> Place {
+    let normal = normalize(in.normal);
+    // Axes in the plane of the smooth normal, or facets would show.
+    let x_axis = in.x_axis - normal * dot(normal, in.x_axis);
+    let y_axis = in.y_axis - normal * dot(normal, in.y_axis);
+    let up = offset_m / tile.height_m;
+    let texture = frame(x_axis, y_axis, up);
+    var at = texture;
+    if tile.tinted > 0.5 {
+        at = hair_frame(in.axis, x_axis, normal, in.spread, up);
+    }
+    let world_ray = ray_direction(in.position_m);
+    let ray = ray_in_tile(at, world_ray);
+    let sweep = Ray(vec3((texture.tile_from_world * world_ray).xy, ray.direction.z), ray.cosine, ray.fall);
+
+    // The surface bends away from the ray by half its normal curvature along it, measured in metres of the tile.
+    let sideways = x_axis * sweep.direction.x + y_axis * sweep.direction.y;
+    let turn = in.x_turn * sweep.direction.x + in.y_turn * sweep.direction.y;
+    let bend_per_m = 0.5 * dot(turn, sideways) / max(dot(normal, at.world_from_tile[2]), LEAST_RISE);
+    return Place(normal, world_ray, at, ray, sweep, bend_per_m, in.uv, uv_dx, uv_dy);
+}
+
+fn met(place: Place, slab: Filled) -> Met {
+    let path_m = path_through_slab(place.ray, slab.slab_m, place.bend_per_m);
+    let inwards = select(-0.5, 0.5, NEAR_SIDE) * path_m;
+    let uv = place.uv + inwards * place.sweep.direction.xy / tile.edge_m;
+
+    let run = run_through_slab(place.sweep, path_m, slab.slab_m, slopes[slab.layer]);
+    var spot = footprint(place.uv_dx, place.uv_dy, run, select(FAR_TAPS, MOST_TAPS, NEAR_SIDE));
+    var gain_level = footprint(place.uv_dx, place.uv_dy, vec2(0.0), MOST_TAPS).level;
+    if DEPTHS > 0u {
+        // The mean of the tile: no gap between two hairs counts as bald.
+        gain_level = f32(tile.mips - 1u);
+        spot = Footprint(vec2(0.0), 1.0, gain_level, gain_level);
+    }
+    let medium = medium_of(fetch(medium_texture, uv, slab.layer, spot));
+    // Ends count where the run is short, and colour varies little from hair to hair: one tap each.
+    let ends = textureSampleLevel(ends_texture, hair_sampler, uv, slab.layer, spot.round_level).r;
+
+    // τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], model e of docs/steps/shells.md; g by the pixel's own mip.
+    let through = path_m * lateral(place.at, place.world_ray, medium);
+    let of_ends = slab.slabs * depth_of_opacity(ends) * min(1.0, path_m * place.ray.fall / max(slab.slab_m, 1e-20));
+    return Met(gain(gain_level, place.ray.cosine) * (through + of_ends), medium, uv, spot.round_level);
 }
 
 @fragment
@@ -104,65 +183,47 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         root = root_of(textureSampleGrad(painted_texture, painted_sampler, in.root.zw, 0, root_dx.zw, root_dy.zw), in.longest);
     }
     let slab = filled_slab(in.layer, root.share);
-    if slab.slabs <= 0.0 {
+    if slab.slabs <= 0.0 && DEPTHS != 2u {
         discard;
     }
-    var tint = in.tint;
-    if paint.has_colour > 0u && tile.tinted > 0.5 {
-        tint = vec4(tint.rgb * textureSampleGrad(colour_texture, colour_sampler, in.root.xy, 0, root_dx.xy, root_dy.xy).rgb, tint.w);
-    }
-    tint = mix(vec4(1.0), vec4(tint.rgb, tint.w * root.density), tile.tinted);
     let offset_m = in.offset_m * root.share;
-    let normal = normalize(in.normal);
-    // Axes in the plane of the smooth normal, or facets would show.
-    let x_axis = in.x_axis - normal * dot(normal, in.x_axis);
-    let y_axis = in.y_axis - normal * dot(normal, in.y_axis);
-    let up = offset_m / tile.height_m;
-    let texture = frame(x_axis, y_axis, up);
-    var at = texture;
-    if tile.tinted > 0.5 {
-        at = hair_frame(in.axis, x_axis, normal, in.spread, up);
+    let place = place_of(in, offset_m, uv_dx, uv_dy);
+    let present = mix(1.0, in.tint.w * root.density, tile.tinted) * presence(offset_m);
+    if DEPTHS == 2u {
+        var expected = 0.0;
+        for (var layer = 1u; layer < tile.layers; layer++) {
+            expected += met(place, filled_slab(layer, root.share)).depth * present;
+        }
+        return vec4(0.0, min(expected, OPAQUE), 1.0, 0.0);
     }
-    let world_ray = ray_direction(in.position_m);
-    let ray = ray_in_tile(at, world_ray);
-    // The same ray as the texture is fetched along it.
-    let sweep = Ray(vec3((texture.tile_from_world * world_ray).xy, ray.direction.z), ray.cosine, ray.fall);
 
-    // The surface bends away from the ray by half its normal curvature along it, measured in metres of the tile.
-    let sideways = x_axis * sweep.direction.x + y_axis * sweep.direction.y;
-    let turn = in.x_turn * sweep.direction.x + in.y_turn * sweep.direction.y;
-    let bend_per_m = 0.5 * dot(turn, sideways) / max(dot(normal, at.world_from_tile[2]), LEAST_RISE);
-    let path_m = path_through_slab(ray, slab.slab_m, bend_per_m);
-    let inwards = select(-0.5, 0.5, NEAR_SIDE) * path_m;
-    let uv = in.uv + inwards * sweep.direction.xy / tile.edge_m;
-
-    let run = run_through_slab(sweep, path_m, slab.slab_m, slopes[slab.layer]);
-    let spot = footprint(uv_dx, uv_dy, run, select(FAR_TAPS, MOST_TAPS, NEAR_SIDE));
-    let layer = slab.layer;
-    let medium = medium_of(fetch(medium_texture, uv, layer, spot));
-    // Ends count where the run is short, and colour varies little from hair to hair: one tap each.
-    let ends = textureSampleLevel(ends_texture, hair_sampler, uv, layer, spot.round_level).r;
-    if medium.extinction + ends == 0.0 {
-        discard;
+    let found = met(place, slab);
+    let medium = found.medium;
+    let kept = select(1.0, 1.0 - fin_share(dot(place.normal, place.world_ray)), WITH_FINS);
+    let depth = found.depth * present * kept;
+    if DEPTHS == 1u {
+        return vec4(min(depth, OPAQUE), 0.0, 0.0, 0.0);
     }
-    let surface = textureSampleLevel(albedo_texture, hair_sampler, uv, layer, spot.round_level);
-
-    // τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], model e of docs/steps/shells.md; g by the pixel's own mip.
-    let through = path_m * lateral(at, world_ray, medium);
-    let of_ends = slab.slabs * depth_of_opacity(ends) * min(1.0, path_m * ray.fall / slab.slab_m);
-    let gained = gain(footprint(uv_dx, uv_dy, vec2(0.0), MOST_TAPS).level, ray.cosine);
-    let kept = select(1.0, 1.0 - fin_share(dot(normal, world_ray)), WITH_FINS);
-    let present = tint.w * presence(offset_m);
-    let depth = gained * (through + of_ends) * present * kept;
     let opacity = 1.0 - exp(-depth);
     if opacity < INVISIBLE {
         discard;
     }
+    let surface = textureSampleLevel(albedo_texture, hair_sampler, found.uv, slab.layer, found.round_level);
+    var tint = vec3(1.0);
+    if tile.tinted > 0.5 {
+        tint = in.tint.rgb;
+        if paint.has_colour > 0u {
+            tint *= textureSampleGrad(colour_texture, colour_sampler, in.root.xy, 0, root_dx.xy, root_dy.xy).rgb;
+        }
+    }
+    let at = place.at;
+    let normal = place.normal;
+    let world_ray = place.world_ray;
 
     // m, where there is enough hair for eight bits to tell; its length says how far the hairs agree.
     let agreement = min(length(medium.tangent) / max(medium.extinction, LEAST_EXTINCTION), 1.0);
     let tangent = normalize(at.world_from_tile * (medium.tangent + vec3(0.0, 0.0, LEAST_EXTINCTION))) * agreement;
-    let hair = Hair(surface.rgb * tint.rgb, tangent, normal, -world_ray);
+    let hair = Hair(surface.rgb * tint, tangent, normal, -world_ray);
     let outside_depth = min(-log(max(surface.a, LEAST_CLEAR)), DEEPEST_HAIR) * present;
     var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
     for (var i = 0u; i < view.light_count; i++) {

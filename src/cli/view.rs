@@ -30,9 +30,9 @@ pub struct View {
     /// The picture to write: .png or .exr
     #[arg(long, value_name = "OUT.png|exr")]
     screenshot: PathBuf,
-    /// What to draw: parts of the coat, or how it lies: the hair's direction and length, the patches of its texture, or
-    /// their stretch
-    #[arg(long, value_name = "skin,shells,fins|field|patches|stretch", default_value = "skin,shells,fins")]
+    /// What to draw: parts of the coat; or how it lies: the hair's direction and length, the patches of its texture, or
+    /// their stretch; or where skin is bald that should not be
+    #[arg(long, value_name = "skin,shells,fins|field|patches|stretch|bald", default_value = "skin,shells,fins")]
     show: String,
     #[command(flatten)]
     stage: StageArgs,

@@ -1,5 +1,6 @@
 //! Floor 9: pictures of a coat or of how it lies: one, or several around it on a contact sheet.
 
+pub mod bald;
 pub mod chart;
 pub mod stage;
 pub mod subject;
@@ -19,6 +20,7 @@ use crate::stage::camera::{Orbit, Viewpoint, depth_range_m};
 use crate::stage::file::Format;
 use crate::stage::light::Lit;
 use crate::stage::{exr, options, png, tone};
+use bald::Baldness;
 use std::time::Instant;
 use subject::subject;
 
@@ -56,6 +58,8 @@ pub enum Shown {
     Coat(Show),
     /// How it lies.
     Chart(Chart),
+    /// Where hair is missing.
+    Bald,
 }
 
 impl Default for Shown {
@@ -90,19 +94,20 @@ impl Shot {
     }
 }
 
-/// Reads what to show: some of `skin`, `shells`, `fins`, with commas between, or one of `field`, `patches`, `stretch` alone.
+/// Reads what to show: some of `skin`, `shells`, `fins`, with commas between, or one of `field`, `patches`, `stretch`, `bald` alone.
 ///
 /// # Errors
 /// Names the word that is none of them, or a chart that is not alone.
 pub fn parse_show(text: &str) -> Result<Shown> {
-    let chart = |word: &str| match word {
-        "field" => Some(Chart::Field),
-        "patches" => Some(Chart::Patches),
-        "stretch" => Some(Chart::Stretch),
+    let alone = |word: &str| match word {
+        "field" => Some(Shown::Chart(Chart::Field)),
+        "patches" => Some(Shown::Chart(Chart::Patches)),
+        "stretch" => Some(Shown::Chart(Chart::Stretch)),
+        "bald" => Some(Shown::Bald),
         _ => None,
     };
-    if let Some(chart) = chart(text.trim()) {
-        return Ok(Shown::Chart(chart));
+    if let Some(shown) = alone(text.trim()) {
+        return Ok(shown);
     }
     let mut show = Show { skin: false, shells: false, fins: false };
     for word in text.split(',').map(str::trim) {
@@ -110,8 +115,8 @@ pub fn parse_show(text: &str) -> Result<Shown> {
             "skin" => show.skin = true,
             "shells" => show.shells = true,
             "fins" => show.fins = true,
-            _ if chart(word).is_some() => {
-                return Err(Error::usage("field, patches and stretch are pictures by themselves")
+            _ if alone(word).is_some() => {
+                return Err(Error::usage("field, patches, stretch and bald are pictures by themselves")
                     .with_parameter("show")
                     .with_found(text)
                     .with_expected(format!("{word} alone, or some of skin, shells, fins")));
@@ -120,7 +125,9 @@ pub fn parse_show(text: &str) -> Result<Shown> {
                 return Err(Error::usage("there is no such thing to show")
                     .with_parameter("show")
                     .with_found(word)
-                    .with_expected("skin, shells, fins, with commas between; or one of field, patches, stretch"));
+                    .with_expected(
+                        "skin, shells, fins, with commas between; or one of field, patches, stretch, bald",
+                    ));
             }
         }
     }
@@ -201,6 +208,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
     };
     let staged = || match options.show {
         Shown::Coat(show) => Ok((stage::scene(asset, coat, &textures, &pose), show, Vec::new())),
+        Shown::Bald => Ok((stage::scene(asset, coat, &textures, &pose), Show::default(), Vec::new())),
         Shown::Chart(chart) => drawing(chart),
     };
     let (scene, show, legend) = recorder.step("pose", staged, |_| 0)?;
@@ -226,6 +234,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
     } else {
         Some(recorder.step("lights", || stage.lit(&subject, &stage.camera(&subject)?), |_| 0)?)
     };
+    let mut baldness = Baldness::default();
     let mut pictures = Vec::with_capacity(viewpoints.len());
     for viewpoint in viewpoints {
         let start = Instant::now();
@@ -249,7 +258,23 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
             ambient: lit.ambient,
         };
         recorder.row("draw: camera and light", ms_since(start), 0);
-        pictures.push(draw(&mut prepared, &view, show, &mut recorder)?);
+        let mut picture = draw(&mut prepared, &view, show, &mut recorder)?;
+        if options.show == Shown::Bald {
+            let hair = recorder.step("hair over skin", || prepared.hair_over_skin(&view), |_| 0)?;
+            picture = bald::picture(&hair, &picture);
+            let here = Baldness::of(&hair);
+            (baldness.furred, baldness.bald) = (baldness.furred + here.furred, baldness.bald + here.bald);
+        }
+        pictures.push(picture);
+    }
+    let mut legend = legend;
+    if options.show == Shown::Bald {
+        recorder.count("furred pixels", baldness.furred);
+        recorder.count("bald pixels", baldness.bald);
+        legend.push(format!(
+            "{:.3} % of the furred skin that is seen is bald (red): less than half of the hair over it that grows there",
+            100.0 * baldness.share()
+        ));
     }
     Ok(Shots { pictures, recorder, legend })
 }

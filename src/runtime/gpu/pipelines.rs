@@ -111,6 +111,7 @@ pub struct Pipelines {
     pub near_shells: [wgpu::RenderPipeline; 2],
     /// Fins: test depth.
     pub fins: wgpu::RenderPipeline,
+    shell: wgpu::ShaderModule,
     /// Samples to pixels.
     pub resolve: wgpu::RenderPipeline,
 }
@@ -193,9 +194,46 @@ impl Pipelines {
             far_shells: [shells(false, false), shells(false, true)],
             near_shells: [shells(true, false), shells(true, true)],
             fins: pipeline(gpu, &fins),
+            shell,
             resolve: pipeline(gpu, &resolve),
             layouts,
         })
+    }
+}
+
+/// The passes that add up how much hair lies over the skin.
+pub struct DepthPipelines {
+    /// On the skin: what the hair over it would come to.
+    pub expected: wgpu::RenderPipeline,
+    /// Each near shell.
+    pub slabs: wgpu::RenderPipeline,
+}
+
+impl DepthPipelines {
+    /// Compiles both.
+    pub fn new(gpu: &Gpu, pipelines: &Pipelines) -> Self {
+        let Layouts { view, tile, geometry, .. } = &pipelines.layouts;
+        let one = wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::One,
+            dst_factor: wgpu::BlendFactor::One,
+            operation: wgpu::BlendOperation::Add,
+        };
+        let added = wgpu::BlendState { color: one, alpha: one };
+        let targets =
+            [Some(wgpu::ColorTargetState { format: COLOUR, blend: Some(added), write_mask: wgpu::ColorWrites::ALL })];
+        let shells = |depths: f64| {
+            let constants = [("NEAR_SIDE", 1.0), ("WITH_FINS", 0.0), ("DEPTHS", depths)];
+            let pass = Pass {
+                shader: &pipelines.shell,
+                groups: &[Some(view), Some(tile), Some(geometry)],
+                vertices: &[],
+                constants: &constants,
+                targets: &targets,
+                writes_depth: Some(false),
+            };
+            pipeline(gpu, &pass)
+        };
+        Self { expected: shells(2.0), slabs: shells(1.0) }
     }
 }
 

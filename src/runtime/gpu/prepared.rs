@@ -1,12 +1,13 @@
 //! A pose on the device, ready to be drawn from anywhere in any light.
 
 use super::layout::ViewUniform;
+use super::pipelines::DepthPipelines;
 use super::resources::{self, GpuFur, GpuSkin, Textures};
 use super::targets::Targets;
 use super::{Drawn, PassCost, Renderer};
 use crate::error::{Error, Result};
 use crate::gpu::Timer;
-use crate::runtime::draw_list::{DrawList, Frame, MAX_LIGHTS, Show};
+use crate::runtime::draw_list::{DrawList, Frame, MAX_LIGHTS, Picture, Show};
 use bytemuck::Zeroable;
 
 /// The passes in the order drawn.
@@ -104,6 +105,45 @@ impl<'a> Prepared<'a> {
         let target_bytes = targets.bytes;
         self.targets = Some(targets);
         Ok(Drawn { picture, passes, target_bytes })
+    }
+
+    /// How much hair lies over the skin, as a picture: red is the mean optical depth that all near shells have at a pixel, green
+    /// what they would have on a plane there, at most 4 each slab; blue is 1 where furred skin is seen and nothing before it.
+    ///
+    /// # Errors
+    /// As [`Self::draw`].
+    pub fn hair_over_skin(&self, view: &Frame) -> Result<Picture> {
+        let Renderer { gpu, pipelines, samples, .. } = self.renderer;
+        let targets = Targets::new(gpu, pipelines, view.size, *samples)?;
+        let depths = DepthPipelines::new(gpu, pipelines);
+        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view)));
+        let mut encoder = gpu.encoder("hair over skin");
+        for (index, name) in PASSES.into_iter().enumerate() {
+            let mut pass = targets.pass(&mut encoder, name, index, None);
+            pass.set_bind_group(0, &self.view_group, &[]);
+            let layers = |fur: &GpuFur| match index {
+                1 => 0..1,
+                _ => 1..self.renderer.tiles[fur.tile].layers,
+            };
+            match index {
+                0 => {
+                    let mut cost = PassCost { name, ms: None, bytes: 0, draw_calls: 0, triangles: 0 };
+                    self.draw_skins(&mut pass, false, &mut cost);
+                    continue;
+                }
+                1 => pass.set_pipeline(&depths.expected),
+                3 => pass.set_pipeline(&depths.slabs),
+                _ => continue,
+            }
+            for fur in self.furs.iter().filter(|fur| fur.shell_vertices > 0) {
+                pass.set_bind_group(1, &self.renderer.tiles[fur.tile].group, &[]);
+                pass.set_bind_group(2, &fur.shells, &[]);
+                pass.draw(0..fur.shell_vertices, layers(fur));
+            }
+        }
+        targets.resolve(&mut encoder, pipelines);
+        gpu.finish(encoder)?;
+        targets.picture(gpu, view)
     }
 
     fn draw_skins(&self, pass: &mut wgpu::RenderPass<'_>, visible: bool, cost: &mut PassCost) {
