@@ -240,6 +240,9 @@ impl Preset {
         for (i, stroke) in self.groom.strokes.iter().enumerate() {
             stroke.check(&format!("groom.strokes[{i}]"))?;
         }
+        for (i, parting) in self.groom.partings.iter().enumerate() {
+            parting.check(&format!("groom.partings[{i}]"))?;
+        }
         if self.regions.len() > 8 {
             return Err(Error::usage("a preset has too many regions")
                 .with_field("regions")

@@ -43,6 +43,7 @@ impl Ball {
             clump: vec![1.0; mesh.positions_m.len()],
             tint: mesh.positions_m.iter().map(|p| if p.z > 0.0 { Vec3::X } else { Vec3::Y }).collect(),
             paint: None,
+            partings: Vec::new(),
         };
         let colour = Colour { variation: 0.0, ..Colour::default() };
         let guard = Guard { density_per_cm2: 150.0, length: Length::Mm(5.0), ..Guard::default() };

@@ -263,7 +263,7 @@ impl Furred {
             tint: self.tint.as_slice().into(),
             triangles: &self.triangles,
             fins: self.fins.as_slice().into(),
-            over_last: false,
+            ..CoatMesh::default()
         };
         DrawList { skins: vec![skin], furs: vec![fur], tiles }
     }

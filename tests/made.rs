@@ -74,6 +74,7 @@ pub fn coat_for(asset: &Asset) -> Coat {
             normal: part.stored.normals.clone(),
             colour: None,
             painted: None,
+            cut: None,
             longest: (0..n).map(|v| 1.0 / (1 + v % 5) as f32).collect(),
             triangles: mesh.triangles.clone(),
             fins: mesh.triangles.iter().map(fin).collect(),

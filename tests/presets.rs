@@ -119,29 +119,39 @@ at = { units = [0.0, -1.0, 0.0] }
 [[groom.strokes]]
 points = { relative = [[0.5, 0.5, 1.0], [1.0, 0.5, 0.5], [0.5, 0.5, 0.0]] }
 reach = { mm = 40 }
+[[groom.partings]]
+points = { relative = [[0.4, 1.0, 0.7], [0.4, 1.0, 0.2]] }
+width = { mm = 3 }
+angle_deg = 25
 "#;
 
 #[test]
-fn whorls_and_strokes_are_read() {
+fn whorls_strokes_and_partings_are_read() {
     let groom = Preset::from_toml(COMBED).unwrap().groom;
     assert_eq!(groom.comb, Comb::Smooth);
     assert_eq!(groom.whorls[0].at, Place::Relative([0.5, 1.0, 0.5]));
     assert_eq!((groom.whorls[0].spin_deg, groom.whorls[1].spin_deg), (90.0, 60.0));
     assert_eq!(groom.whorls[1].reach, Length::Relative(0.1));
     assert_eq!(groom.strokes[0].points.places().len(), 3);
+    let parting = &groom.partings[0];
+    assert_eq!((parting.reach, parting.width), (Length::Relative(0.1), Length::Mm(3.0)));
+    assert_eq!(parting.angle_deg, 25.0);
     // Settings reach them as they reach all else.
     let cleared = Preset::from_toml(COMBED).unwrap().with_settings(&["groom.whorls=[]".to_owned()]).unwrap();
     assert!(cleared.groom.whorls.is_empty() && cleared.groom.strokes.len() == 1);
 }
 
 #[test]
-fn whorls_and_strokes_that_cannot_be_are_refused_by_name() {
+fn whorls_strokes_and_partings_that_cannot_be_are_refused_by_name() {
     for (good, bad, field) in [
         ("[0.5, 1.0, 0.5]", "[0.5, 7.0, 0.5]", "groom.whorls[0].at.relative"),
         ("[0.0, -1.0, 0.0]", "[0.0, nan, 0.0]", "groom.whorls[1].at.units"),
         ("{ relative = 0.2 }", "{ relative = 0.0 }", "groom.whorls[0].reach.relative"),
         ("spin_deg = 90", "spin_deg = 360", "groom.whorls[0].spin_deg"),
         ("{ mm = 40 }", "{ mm = -1 }", "groom.strokes[0].reach.mm"),
+        ("{ mm = 3 }", "{ mm = -1 }", "groom.partings[0].width.mm"),
+        ("angle_deg = 25", "angle_deg = 91", "groom.partings[0].angle_deg"),
+        ("[[0.4, 1.0, 0.7], [0.4, 1.0, 0.2]]", "[[0.4, 1.0, 0.7]]", "groom.partings[0].points"),
         ("[[0.5, 0.5, 1.0], [1.0, 0.5, 0.5], [0.5, 0.5, 0.0]]", "[[0.5, 0.5, 1.0]]", "groom.strokes[0].points"),
         ("[1.0, 0.5, 0.5]", "[0.5, 0.5, 1.0]", "groom.strokes[0].points"),
         ("[1.0, 0.5, 0.5]", "[1.0, 0.5, inf]", "groom.strokes[0].points[1].relative"),
@@ -175,7 +185,8 @@ fn a_whorl_turns_hair_where_it_says_and_one_that_misses_is_told() {
         bake(&request, &mut |_| {}).unwrap()
     };
     let size = |baked: &furrier::bake::Baked| baked.diagonal_m as f32;
-    let preset = Preset::from_toml(&COMBED.replacen("0.0, -1.0, 0.0", "0.0, -50.0, 0.0", 1)).unwrap();
+    let missing = COMBED.replacen("0.0, -1.0, 0.0", "0.0, -50.0, 0.0", 1).replacen("0.4, 1.0, 0.", "0.4, 1.5, 0.", 2);
+    let preset = Preset::from_toml(&missing).unwrap();
     let baked = bake(preset);
     // The first whorl sits on the top of the ball: a crown there, and nowhere else so near.
     let top = furrier::math::Vec3::Y * 0.5 * size(&baked) / 3.0_f32.sqrt();
@@ -183,5 +194,6 @@ fn a_whorl_turns_hair_where_it_says_and_one_that_misses_is_told() {
     let near = crowns.iter().map(|s| s.position_m.distance(top)).fold(f32::INFINITY, f32::min);
     assert!(near < 0.05 * size(&baked), "{near} m from the top, {crowns:?}");
     let told: Vec<_> = baked.warnings.iter().filter(|w| w.contains("groom.")).collect();
-    assert!(told.len() == 1 && told[0].contains("groom.whorls[1] combs nothing"), "{told:?}");
+    assert!(told.len() == 2 && told[0].contains("groom.whorls[1] combs nothing"), "{told:?}");
+    assert!(told[1].contains("groom.partings[0] combs nothing"), "{told:?}");
 }

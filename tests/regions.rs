@@ -75,7 +75,7 @@ fn view(edge_m: f32) -> Frame {
 /// Coverage of shells by columns of a picture of the whole plane, seen along a ray 40° off its normal, across the ramp.
 fn columns(gpu: &Gpu, asset: &asset::Asset, coat: &Coat) -> Vec<f32> {
     let view = view(0.16);
-    let textures = stage::textures(asset).unwrap();
+    let textures = stage::textures(asset, coat).unwrap();
     let pose = asset.rest_pose().unwrap();
     let scene = stage::scene(asset, coat, &textures, &pose);
     let renderer = Renderer::new(gpu, &coat.tiles, 1).unwrap();
@@ -154,7 +154,7 @@ fn coverage_rises_from_one_tile_to_the_other() {
 /// plane's normal.
 fn passage(gpu: &Gpu, asset: &asset::Asset, worn: &CoatPrimitive, coat: &Coat, fault: &Fault<'_>) -> Picture {
     let coat = Coat { primitives: vec![worn.clone()], ..coat.clone() };
-    let textures = stage::textures(asset).unwrap();
+    let textures = stage::textures(asset, &coat).unwrap();
     let mut scene = stage::scene(asset, &coat, &textures, &asset.rest_pose().unwrap());
     fault(&mut scene);
     let show = Show { skin: false, shells: true, fins: false };

@@ -37,6 +37,7 @@ impl Grown {
             clump: vec![1.0; n],
             tint: vec![Vec3::from(Colour::default().tint); n],
             paint: None,
+            partings: Vec::new(),
         };
         let colour = Colour::default();
         let guard_fibre = Fibre::guard(guard, &colour, 1.0);

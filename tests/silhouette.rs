@@ -140,6 +140,7 @@ fn measured(camera: &Camera, fibres: [&Fibre; 2], lean_rad: f32, fins: &[Fins]) 
         clump: vec![1.0; count],
         tint: vec![Vec3::ONE; count],
         paint: None,
+        partings: Vec::new(),
     };
     let [guard, undercoat] = [0, 1].map(|i| grow::skin::grow(fibres[i], &mesh, &fields, 3 + i as u64));
     let scene = Geometry { guard: Some(&guard), undercoat: Some(&undercoat), skin: Some(&mesh), ..Default::default() };

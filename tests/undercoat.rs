@@ -124,6 +124,7 @@ pub fn on_level_skin<T>(hairs: &Cylinders, with: impl FnOnce(&Scene<'_>) -> T) -
         clump: vec![0.0; n],
         tint: vec![Vec3::ONE; n],
         paint: None,
+        partings: Vec::new(),
     };
     let fibre = fibre(hairs);
     with(&Scene {

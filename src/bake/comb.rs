@@ -1,20 +1,22 @@
-//! The comb's sources in the order that they decide: painted map, vertex attribute, whorls, strokes, the preset's rule.
+//! The comb's sources in the order that they decide: painted map, vertex attribute, whorls, strokes, partings,
+//! the preset's rule.
 
 use super::units::Scale;
 use crate::asset::Asset;
 use crate::data::maps::Maps;
 use crate::data::mesh::Mesh;
+use crate::data::parting::Parting;
 use crate::error::Result;
 use crate::fur::field::{DirectionField, FieldSource, Whorl, directions};
 use crate::fur::groom::maps::comb_directions;
-use crate::fur::groom::{Comb, Groom, Place};
+use crate::fur::groom::{self, Comb, Groom, Place};
 use crate::math::{DVec3, Vec3};
 
 /// Share of gravity in a tailward comb.
 const SAG: f32 = 0.3;
 
-/// The comb of `mesh`, a part of `asset`; zero where hair stands upright. What should be said of whorls and strokes that
-/// miss the asset is added to `notes`.
+/// The comb of `mesh`, a part of `asset`; zero where hair stands upright. What should be said of whorls, strokes and
+/// partings that miss the asset is added to `notes`.
 ///
 /// # Errors
 /// As [`directions`].
@@ -33,7 +35,7 @@ pub fn comb(
     if let Some(attribute) = &mesh.fur_direction {
         sources.push(FieldSource::Vertices(attribute.clone()));
     }
-    if !groom.whorls.is_empty() || !groom.strokes.is_empty() {
+    if !groom.whorls.is_empty() || !groom.strokes.is_empty() || !groom.partings.is_empty() {
         let brush = Brush::new(asset, scale);
         sources.extend(brush.sources(groom));
         brush.misses(groom, notes);
@@ -48,6 +50,15 @@ pub fn comb(
         Comb::Tailward => sources.push(FieldSource::Tailward { sag: SAG }),
     }
     directions(mesh, &sources)
+}
+
+/// A preset's partings on `asset`.
+pub fn partings(asset: &Asset, groom: &Groom, scale: &Scale) -> Vec<Parting> {
+    if groom.partings.is_empty() {
+        return Vec::new();
+    }
+    let brush = Brush::new(asset, scale);
+    groom.partings.iter().map(|parting| brush.parting(parting)).collect()
 }
 
 /// Turns places of a preset into metres of an asset.
@@ -83,6 +94,15 @@ impl<'a> Brush<'a> {
         ((units - self.origin) * self.scale.metres_per_unit).as_vec3()
     }
 
+    fn parting(&self, parting: &groom::Parting) -> Parting {
+        Parting {
+            line_m: parting.points.places().into_iter().map(|p| self.point_m(p)).collect(),
+            reach_m: parting.reach.metres(self.diagonal_m()),
+            width_m: parting.width.metres(self.diagonal_m()),
+            angle_rad: parting.angle_deg.to_radians(),
+        }
+    }
+
     fn sources(&self, groom: &Groom) -> Vec<FieldSource> {
         let whorl = |w: &crate::fur::groom::Whorl| Whorl {
             centre_m: self.point_m(w.at),
@@ -94,15 +114,21 @@ impl<'a> Brush<'a> {
             lines_m: vec![s.points.places().into_iter().map(|p| self.point_m(p)).collect()],
             reach_m: s.reach.metres(self.diagonal_m()),
         });
-        std::iter::once(whorls).chain(strokes).collect()
+        let partings = FieldSource::Partings(groom.partings.iter().map(|p| self.parting(p)).collect());
+        std::iter::once(whorls).chain(strokes).chain([partings]).collect()
     }
 
-    /// Says which whorls and strokes lie further from every vertex than they reach.
+    /// Says which whorls, strokes and partings lie further from every vertex than they reach.
     fn misses(&self, groom: &Groom, notes: &mut Vec<String>) {
         let whorls = groom.whorls.iter().enumerate().map(|(i, w)| (format!("groom.whorls[{i}]"), vec![w.at], w.reach));
         let strokes =
             groom.strokes.iter().enumerate().map(|(i, s)| (format!("groom.strokes[{i}]"), s.points.places(), s.reach));
-        for (name, places, reach) in whorls.chain(strokes) {
+        let partings = groom
+            .partings
+            .iter()
+            .enumerate()
+            .map(|(i, p)| (format!("groom.partings[{i}]"), p.points.places(), p.reach));
+        for (name, places, reach) in whorls.chain(strokes).chain(partings) {
             let line: Vec<Vec3> = places.into_iter().map(|p| self.point_m(p)).collect();
             let reach_m = reach.metres(self.diagonal_m());
             let nearest_m = self

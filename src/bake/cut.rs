@@ -48,6 +48,7 @@ pub fn cut(
         part_of: vec![0; count],
         factor: own_factor.clone(),
         longest: own_longest.clone(),
+        density: vec![1.0; count],
     };
     let zeros = || vec![Vec3::ZERO; count];
     let fields = Fields {
@@ -59,6 +60,7 @@ pub fn cut(
         clump: vec![1.0; count],
         tint: zeros(),
         paint: Some(Arc::new(own)),
+        partings: Vec::new(),
     };
     let most = MOST_TRIANGLES.0 + MOST_TRIANGLES.1 * carried.triangles.len();
     let density = |corners: [u32; 3], b: Vec3| Vec3::from(corners.map(|c| carried.tint[c as usize].w)).dot(b);

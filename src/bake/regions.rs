@@ -145,6 +145,7 @@ impl Mixed {
                 clump: fields[0].clump.clone(),
                 tint: (0..count).map(|v| sum3(v, &|t| fields[t].tint[v])).collect(),
                 paint: None,
+                partings: fields[0].partings.clone(),
             },
         }
     }

@@ -1,6 +1,6 @@
 //! The skin made ready for fur: its mesh in metres, what is painted on it and the fields over it.
 
-use super::comb::comb;
+use super::comb::{comb, partings};
 use super::units::Scale;
 use super::weld::Skin;
 use crate::asset::material::BaseColour;
@@ -15,7 +15,7 @@ use crate::data::texture::Texture;
 use crate::error::Result;
 use crate::fur::field::Singularity;
 use crate::fur::groom::fibre::Fibre;
-use crate::fur::groom::{ColourSource, fields};
+use crate::fur::groom::{ColourSource, fields, parted};
 use crate::math::{Mat3, Vec3, Vec4};
 use crate::preset::{self, Preset};
 use std::collections::HashMap;
@@ -55,7 +55,8 @@ pub fn groom(
     let undercoat = Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m);
     // Undercoat must not cross, as it is a volume; single guard hairs may.
     let height_m = if undercoat.height_m() > 0.0 { undercoat.height_m() } else { guard.height_m() };
-    let fields = fields::gather(&skin.mesh, &preset.groom, paint, comb.direction, height_m);
+    let mut fields = fields::gather(&skin.mesh, &preset.groom, paint, comb.direction, height_m);
+    parted::part(&skin.mesh, partings(asset, &preset.groom, scale), height_m, &mut fields);
     Ok(Groomed { fields, skin: skin.clone(), singularities: comb.singularities, notes })
 }
 
@@ -76,13 +77,14 @@ impl Groomed {
         fn at<T: Copy>(list: &[T], old: &[u32]) -> Vec<T> {
             old.iter().map(|&v| list[v as usize]).collect()
         }
-        let Fields { length, density, direction, lean, clump, tint, paint } = &self.fields;
+        let Fields { length, density, direction, lean, clump, tint, paint, partings } = &self.fields;
         let cut_paint = |paint: &Arc<Paint>| {
             Arc::new(Paint {
                 parts: paint.parts.clone(),
                 part_of: at(&paint.part_of, &old),
                 factor: at(&paint.factor, &old),
                 longest: at(&paint.longest, &old),
+                density: at(&paint.density, &old),
             })
         };
         let fields = Fields {
@@ -93,6 +95,7 @@ impl Groomed {
             clump: at(clump, &old),
             tint: at(tint, &old),
             paint: paint.as_ref().map(cut_paint),
+            partings: partings.clone(),
         };
         Self { skin, fields, singularities: self.singularities.clone(), notes: self.notes.clone() }
     }
@@ -169,6 +172,7 @@ impl Groomed {
             joined.part_of.extend(&other.part_of);
             joined.factor.extend(&other.factor);
             joined.longest.extend(&other.longest);
+            joined.density.extend(&other.density);
             *paint = Arc::new(joined);
         }
     }
@@ -247,5 +251,6 @@ fn paint(
         part_of: skin.stored.iter().map(|(part, _)| *part).collect(),
         factor: skin.stored.iter().enumerate().map(factor).collect(),
         longest: Vec::new(),
+        density: vec![1.0; skin.stored.len()],
     })
 }

@@ -60,7 +60,7 @@ impl Textures {
                 *tint = paint.factor[v as usize].clamp(Vec3::ZERO, Vec3::ONE).extend(tint.w);
             }
             if painted.is_some() {
-                tint.w = 1.0;
+                tint.w = paint.density[v as usize];
             }
         }
         if painted.is_some() {

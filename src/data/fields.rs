@@ -1,10 +1,11 @@
 //! What varies over the skin: one value per vertex of a [`super::mesh::Mesh`].
 
 use super::paint::Paint;
+use super::parting::Parting;
 use crate::math::Vec3;
 use std::sync::Arc;
 
-/// The groom's fields on a mesh. All arrays have one entry per vertex.
+/// The groom's fields on a mesh. All arrays but the partings have one entry per vertex.
 #[derive(Clone, Debug, Default)]
 pub struct Fields {
     /// Hair length over the preset's, 0 for bare skin; with lengths painted, the longest around.
@@ -22,4 +23,6 @@ pub struct Fields {
     pub tint: Vec<Vec3>,
     /// What is painted between the vertices; none where nothing is, or vertices hold it.
     pub paint: Option<Arc<Paint>>,
+    /// Lines out of which roots of single hairs are moved; `density` and `direction` have them already. Not per vertex.
+    pub partings: Vec<Parting>,
 }

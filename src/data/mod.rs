@@ -9,6 +9,7 @@ pub mod light;
 pub mod maps;
 pub mod mesh;
 pub mod paint;
+pub mod parting;
 pub mod patches;
 pub mod ray;
 pub mod shell;

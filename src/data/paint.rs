@@ -29,6 +29,8 @@ pub struct Paint {
     pub factor: Vec<Vec3>,
     /// Per vertex: the longest length that is painted on the triangles around it, which is that of its offset.
     pub longest: Vec<f32>,
+    /// Per vertex: factor on density.
+    pub density: Vec<f32>,
 }
 
 /// What is painted at a point.
@@ -107,7 +109,8 @@ impl Paint {
 
     /// What is painted at vertex `v`.
     pub fn at_vertex(&self, mesh: &Mesh, v: usize) -> PaintedPoint {
-        self.at_vertex_of(mesh, v, self.part_of[v] as usize, self.factor[v])
+        let point = self.at_vertex_of(mesh, v, self.part_of[v] as usize, self.factor[v]);
+        PaintedPoint { density: self.density[v] * point.density, ..point }
     }
 
     /// What is painted at vertex `v` of a mesh that lies on a part, with this factor on colour.
@@ -120,7 +123,8 @@ impl Paint {
     pub fn at(&self, mesh: &Mesh, t: usize, b: Vec3) -> PaintedPoint {
         let corners = mesh.triangles[t].map(|v| v as usize);
         let factor = self.factor[corners[0]] * b.x + self.factor[corners[1]] * b.y + self.factor[corners[2]] * b.z;
-        self.of(mesh, t).at(|set| uv_at(mesh, set, corners, b), factor)
+        let point = self.of(mesh, t).at(|set| uv_at(mesh, set, corners, b), factor);
+        PaintedPoint { density: Vec3::from(corners.map(|v| self.density[v])).dot(b) * point.density, ..point }
     }
 
     /// The length at a point of triangle `t` over that of the offsets around it, in [0, 1].

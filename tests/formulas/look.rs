@@ -184,7 +184,7 @@ fn fins_are_as_opaque_and_as_bright_as_their_formulas_say() {
             tint: vec![tint; 2].into(),
             triangles: &[],
             fins: vec![FinEdge { ends: [0, 1], opposite: [0, 1], u: [0.0, 1.0], thickness }].into(),
-            over_last: false,
+            ..CoatMesh::default()
         };
         let frame = frame(ray);
         let list = DrawList { skins: vec![], furs: vec![fur], tiles: &tiles };

@@ -110,6 +110,7 @@ impl Strip {
                 clump: four(mix1(&fields.clump)),
                 tint: vec![Vec3::ONE; 4],
                 paint: None,
+                partings: Vec::new(),
             },
             world_from_fin: Mat3::from_cols(x, y, rise),
             width_m,

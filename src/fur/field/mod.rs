@@ -6,6 +6,7 @@ mod smooth;
 mod source;
 
 use crate::data::mesh::Mesh;
+use crate::data::parting::Parting;
 use crate::error::{Error, Result};
 use crate::math::Vec3;
 use smooth::{Hold, smooth};
@@ -47,6 +48,8 @@ pub enum FieldSource {
         /// How far a stroke reaches, m.
         reach_m: f32,
     },
+    /// Lines that hair falls away from, beside them and within their reach.
+    Partings(Vec<Parting>),
 }
 
 /// A comb without gaps.
@@ -111,6 +114,16 @@ fn check(mesh: &Mesh, source: &FieldSource) -> Result<()> {
         FieldSource::Strokes { lines_m, .. } if !lines_m.iter().flatten().all(|p| p.is_finite()) => {
             fault("a stroke through a point that is not finite".into(), "finite numbers")
         }
+        FieldSource::Partings(all) => match all.iter().find(|p| !sound(p)) {
+            Some(parting) => fault(format!("{parting:?}"), "finite numbers and a positive reach"),
+            None => Ok(()),
+        },
         _ => Ok(()),
     }
+}
+
+fn sound(parting: &Parting) -> bool {
+    let Parting { line_m, reach_m, width_m, angle_rad } = parting;
+    let numbers = [*reach_m, *width_m, *angle_rad];
+    line_m.iter().all(|p| p.is_finite()) && numbers.iter().all(|x| x.is_finite()) && *reach_m > 0.0 && *width_m >= 0.0
 }

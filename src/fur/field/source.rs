@@ -3,6 +3,7 @@
 use super::smooth::{Hold, Wish};
 use super::{FieldSource, Whorl};
 use crate::data::mesh::Mesh;
+use crate::data::parting::Parting;
 use crate::math::Vec3;
 
 /// A projected direction shorter than this share of its length says nothing about the tangent plane.
@@ -44,6 +45,9 @@ fn one(mesh: &Mesh, normals: &[Vec3], source: &FieldSource, v: usize) -> Wish {
                 None => Wish::default(),
             }
         }
+        FieldSource::Partings(partings) => {
+            partings.iter().map(|parting| falling(parting, p, n)).find(|w| w.hold == Hold::Kept).unwrap_or_default()
+        }
     }
 }
 
@@ -74,6 +78,14 @@ fn turning(whorl: &Whorl, p: Vec3, n: Vec3) -> Wish {
     let out = p - whorl.centre_m;
     let (sin, cos) = (libm::sinf(whorl.spin_rad), libm::cosf(whorl.spin_rad));
     kept(out * cos + n.cross(out) * sin, n)
+}
+
+/// Away from the line, or by an angle along it; nothing on the line itself.
+fn falling(parting: &Parting, p: Vec3, n: Vec3) -> Wish {
+    let Some(aside) = parting.aside(p, n) else { return Wish::default() };
+    let Some(off) = aside.off_m.try_normalize() else { return Wish::default() };
+    let (sin, cos) = libm::sincosf(parting.angle_rad);
+    kept(off * cos + aside.along * sin, n)
 }
 
 /// Distance of `p` to a polyline, or to its one point; infinite for none.

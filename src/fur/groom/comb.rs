@@ -1,4 +1,4 @@
-//! What a preset says of the comb: a rule for all of the skin, and whorls and strokes where it needs a hand.
+//! What a preset says of the comb: a rule for all of the skin, and whorls, strokes and partings where it needs a hand.
 
 use super::Length;
 use crate::error::{Error, Result};
@@ -75,6 +75,27 @@ pub struct Stroke {
     pub reach: Length,
 }
 
+/// A line from which hair falls away to both sides, beside it and not beyond its ends.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Parting {
+    /// The line, on or near the skin: two points and more.
+    pub points: Line,
+    /// How far to either side hair falls away from it.
+    #[serde(default = "reach")]
+    pub reach: Length,
+    /// Width of the bare strip along the line, 0 for none; what grew there stands beside it.
+    #[serde(default = "width")]
+    pub width: Length,
+    /// Angle between the hair and the way straight off the line, degrees in [-90, 90]: 90 lies along the line, -90 against it.
+    #[serde(default)]
+    pub angle_deg: f32,
+}
+
+fn width() -> Length {
+    Length::Relative(0.01)
+}
+
 fn reach() -> Length {
     Length::Relative(0.1)
 }
@@ -101,6 +122,34 @@ fn check_point(field: String, place: Place) -> Result<()> {
         }
         _ => Ok(()),
     }
+}
+
+fn check_width(field: &str, width: Length) -> Result<()> {
+    let (unit, value, most) = match width {
+        Length::Mm(mm) => ("mm", mm, 1e6),
+        Length::Relative(share) => ("relative", share, 2.0),
+    };
+    if (0.0..=most).contains(&value) {
+        return Ok(());
+    }
+    Err(fault(format!("{field}.width.{unit}"), value, &format!("a number from 0 to {most}")))
+}
+
+fn check_line(field: &str, line: &Line) -> Result<()> {
+    let places = line.places();
+    if places.len() < 2 {
+        return Err(fault(format!("{field}.points"), format!("{} points", places.len()), "two points and more"));
+    }
+    for (i, pair) in places.windows(2).enumerate() {
+        if pair[0] == pair[1] {
+            let twice = format!("points {i} and {} in one place", i + 1);
+            return Err(fault(format!("{field}.points"), twice, "points that lead from one to the next"));
+        }
+    }
+    for (i, &place) in places.iter().enumerate() {
+        check_point(format!("{field}.points[{i}]"), place)?;
+    }
+    Ok(())
 }
 
 fn check_reach(field: String, reach: Length) -> Result<()> {
@@ -135,19 +184,23 @@ impl Stroke {
     /// # Errors
     /// Names the key out of range.
     pub fn check(&self, field: &str) -> Result<()> {
-        let places = self.points.places();
-        if places.len() < 2 {
-            return Err(fault(format!("{field}.points"), format!("{} points", places.len()), "two points and more"));
-        }
-        for (i, pair) in places.windows(2).enumerate() {
-            if pair[0] == pair[1] {
-                let twice = format!("points {i} and {} in one place", i + 1);
-                return Err(fault(format!("{field}.points"), twice, "points that lead from one to the next"));
-            }
-        }
-        for (i, &place) in places.iter().enumerate() {
-            check_point(format!("{field}.points[{i}]"), place)?;
-        }
+        check_line(field, &self.points)?;
         check_reach(field.to_owned(), self.reach)
+    }
+}
+
+impl Parting {
+    /// Checks ranges and that the line leads somewhere; `field` names the parting.
+    ///
+    /// # Errors
+    /// Names the key out of range.
+    pub fn check(&self, field: &str) -> Result<()> {
+        check_line(field, &self.points)?;
+        check_reach(field.to_owned(), self.reach)?;
+        check_width(field, self.width)?;
+        if !(-90.0..=90.0).contains(&self.angle_deg) {
+            return Err(fault(format!("{field}.angle_deg"), self.angle_deg, "a number from -90 to 90"));
+        }
+        Ok(())
     }
 }

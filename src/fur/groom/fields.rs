@@ -32,5 +32,6 @@ pub fn gather(mesh: &Mesh, groom: &Groom, mut paint: Paint, comb: Vec<Vec3>, hei
         direction: comb,
         tint: painted.iter().map(|p| p.tint).collect(),
         paint: paint.parts.iter().any(Painted::varies).then(|| Arc::new(paint)),
+        partings: Vec::new(),
     }
 }

@@ -7,6 +7,7 @@ pub mod fields;
 pub mod hair;
 pub mod lean;
 pub mod maps;
+pub mod parted;
 pub mod refine;
 pub mod unfold;
 
@@ -14,7 +15,7 @@ use crate::math::Vec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use comb::{Comb, Line, Place, Stroke, Whorl};
+pub use comb::{Comb, Line, Parting, Place, Stroke, Whorl};
 
 /// A length in a preset.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -120,6 +121,8 @@ pub struct Groom {
     pub whorls: Vec<Whorl>,
     /// Brush strokes that comb what lies beside them; where two reach, the earlier decides, and whorls before all.
     pub strokes: Vec<Stroke>,
+    /// Lines that hair falls away from; where two reach, the earlier decides, and whorls and strokes before all.
+    pub partings: Vec<Parting>,
 }
 
 /// Whose hair colour it is.
@@ -196,7 +199,14 @@ impl Default for Undercoat {
 
 impl Default for Groom {
     fn default() -> Self {
-        Self { comb: Comb::Tailward, lean_deg: 35.0, gravity: 0.1, whorls: Vec::new(), strokes: Vec::new() }
+        Self {
+            comb: Comb::Tailward,
+            lean_deg: 35.0,
+            gravity: 0.1,
+            whorls: Vec::new(),
+            strokes: Vec::new(),
+            partings: Vec::new(),
+        }
     }
 }
 

@@ -339,6 +339,7 @@ impl<'a> Cutter<'a> {
             clump: self.painted.iter().map(|p| p.clump).collect(),
             tint: self.painted.iter().map(|p| p.tint).collect(),
             paint: None,
+            partings: Vec::new(),
         };
         Refined {
             mesh,

@@ -1,5 +1,6 @@
 //! Hair on skin: roots by area and density, each hair grown from its root's key alone.
 
+mod parted;
 pub mod skin;
 pub mod tile;
 

@@ -1,5 +1,6 @@
 //! Hair on a mesh.
 
+use super::parted::{Parted, in_order};
 use super::{course, empty, individual};
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
@@ -24,7 +25,7 @@ pub fn grow(fibre: &Fibre, mesh: &Mesh, fields: &Fields, seed: u64) -> Strands {
 /// The hair of `triangles` alone, as [`grow`] would grow it.
 pub fn grow_on(fibre: &Fibre, mesh: &Mesh, fields: &Fields, seed: u64, triangles: &[usize]) -> Strands {
     let normals = mesh.smooth_normals();
-    let field = Field { fibre, mesh, normals: &normals, fields, seed };
+    let field = Field { fibre, mesh, normals: &normals, fields, seed, parted: Parted::new(mesh, fields) };
     let groups = || triangles.par_chunks(GROUP);
     let counts: Vec<usize> = groups().map(|group| group.iter().map(|&t| field.roots(t).count()).sum()).collect();
     let mut all = empty(fibre, 0);
@@ -44,7 +45,7 @@ pub fn grow_on(fibre: &Fibre, mesh: &Mesh, fields: &Fields, seed: u64, triangles
         })
         .collect();
     groups().zip(plots).for_each(|(group, plot)| field.grow(group, plot, all.points_per_strand));
-    all
+    if field.parted.is_some() { in_order(&all) } else { all }
 }
 
 /// Triangles that one thread grows hair on at a time.
@@ -64,6 +65,7 @@ struct Field<'a> {
     normals: &'a [Vec3],
     fields: &'a Fields,
     seed: u64,
+    parted: Option<Parted<'a>>,
 }
 
 impl Field<'_> {
@@ -73,10 +75,11 @@ impl Field<'_> {
         let corners = self.mesh.triangles[t].map(|v| v as usize);
         let (density, length) = (corners.map(|v| self.fields.density[v]), corners.map(|v| self.fields.length[v]));
         let painted = self.paint(t);
-        let greatest = if painted.is_some_and(|paint| paint.of(self.mesh, t).has_densities()) {
-            1.0
-        } else {
-            density.into_iter().fold(0.0, f32::max)
+        let most = |values: [f32; 3]| values.into_iter().fold(0.0, f32::max);
+        let greatest = match painted {
+            // Maps hold at most 1.
+            Some(paint) if paint.of(self.mesh, t).has_densities() => most(corners.map(|v| paint.density[v])),
+            _ => most(density),
         };
         let expected = self.fibre.density_per_m2 * self.mesh.rest_area_m2(t) * greatest;
         let count = (expected + unit_f32(key)).floor() as u64;
@@ -100,11 +103,16 @@ impl Field<'_> {
         self.fields.paint.as_deref().filter(|paint| paint.of(self.mesh, t).varies())
     }
 
+    /// Where a root stands once the hair is parted.
+    fn place(&self, t: usize, b: Vec3) -> (usize, Vec3) {
+        self.parted.as_ref().map_or((t, b), |parted| parted.out(t, b))
+    }
+
     fn grow(&self, group: &[usize], plot: Plot<'_>, points_per_strand: usize) {
-        let roots = group.iter().flat_map(|&t| self.roots(t).map(move |root| (t, root)));
+        let roots = group.iter().flat_map(|&t| self.roots(t).map(move |(b, key)| (self.place(t, b), key)));
         let mut ground: Option<Ground> = None;
         let room = plot.points_m.chunks_exact_mut(points_per_strand).zip(plot.tint).zip(plot.roots);
-        for ((t, (b, key)), ((points_m, tint), root)) in roots.zip(room) {
+        for (((t, b), key), ((points_m, tint), root)) in roots.zip(room) {
             let here = match &ground {
                 Some(ground) if ground.t == t => ground,
                 _ => ground.insert(Ground::new(self, t)),

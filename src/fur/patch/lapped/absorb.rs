@@ -7,6 +7,8 @@ use std::collections::BTreeSet;
 
 /// Patches of at most this share of the mean patch's area count as crumbs: the mean is far above the median.
 const CRUMB: f64 = 1.0;
+/// How much more skin without comb a patch may have than growth gave it.
+const ROOM: f64 = 2.0;
 /// What a crumb's triangle must keep to in its new patch.
 const LIMITS: Limits = Limits { least: 0.45, most: 2.2, angle_rad: 0.3 };
 
@@ -28,7 +30,7 @@ pub(super) fn absorb(surface: &Surface, patches: &mut [Patch], owner: &mut [u32]
                 let takers = (0..3).filter_map(|k| surface.topology.neighbour(t, k).map(|n| (k, owner[n] as usize)));
                 for (k, taker) in takers.filter(|&(_, taker)| taker != crumb) {
                     let Some(joining) = patches[taker].joining(surface, t, k) else { continue };
-                    if fits(surface, t, joining.uv, LIMITS) {
+                    if fits(surface, t, joining.uv, LIMITS) && patches[taker].has_room(surface, t, ROOM) {
                         patches[taker].join(surface, t, &joining);
                         owner[t] = taker as u32;
                         *kept = false;
@@ -37,7 +39,7 @@ pub(super) fn absorb(surface: &Surface, patches: &mut [Patch], owner: &mut [u32]
                     }
                 }
             }
-            patches[crumb].retain(&keep);
+            patches[crumb].retain(surface, &keep);
             if patches[crumb].faces.len() == before || patches[crumb].faces.is_empty() {
                 break;
             }

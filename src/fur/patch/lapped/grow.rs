@@ -5,7 +5,7 @@ use super::flatten::{Effort, flatten};
 use super::patch::{FREE, Limits, Patch, fits};
 use crate::data::topology::NO_NEIGHBOUR;
 use crate::math::DVec2;
-use crate::math::hash::{Stream, combine};
+use crate::math::hash::{Stream, combine, unit_f32};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
 
@@ -24,7 +24,7 @@ const MOST_FACES: usize = 16_000;
 
 /// Grows the patch `id` from `seed` over triangles that `owner` shows free, and enters them there.
 pub(super) fn grow(surface: &Surface, seed: usize, id: u32, random: u64, owner: &mut [u32]) -> Patch {
-    let mut patch = Patch::new(surface, seed);
+    let mut patch = Patch::new(surface, seed, by_chance(random, seed));
     owner[seed] = id;
     let outline = Outline::new(random, seed);
     let mut refused = HashSet::new();
@@ -42,6 +42,12 @@ pub(super) fn grow(surface: &Surface, seed: usize, id: u32, random: u64, owner: 
     flatten(surface, &mut patch, Effort::Final);
     peel(surface, &mut patch, &mut refused, owner);
     patch
+}
+
+/// How a patch lies where there is no comb: neighbours shall not have a direction in common that shows.
+fn by_chance(random: u64, seed: usize) -> DVec2 {
+    let angle = f64::from(unit_f32(combine(combine(random, seed as u64), 0x7475_726e))) * std::f64::consts::TAU;
+    DVec2::new(libm::cos(angle), libm::sin(angle))
 }
 
 /// Lets up to `batch` triangles join, nearest first.
@@ -75,6 +81,7 @@ fn extend(
     {
         let (t, k) = (edge as usize / 3, edge as usize % 3);
         if owner[t] == FREE
+            && patch.has_room(surface, t, 1.0)
             && let Some(joining) = patch.joining(surface, t, k)
             && fits(surface, t, joining.uv, LIMITS)
         {
@@ -120,7 +127,7 @@ fn peel(surface: &Surface, patch: &mut Patch, refused: &mut HashSet<u32>, owner:
     for (slot, _) in reached.iter().enumerate().filter(|(_, reached)| !**reached) {
         owner[patch.faces[slot] as usize] = FREE;
     }
-    patch.retain(&reached);
+    patch.retain(surface, &reached);
 }
 
 /// A splotch: distances from the seed, longer in some directions than in others.

@@ -31,9 +31,21 @@ pub(super) struct Surface<'a> {
     pub topology: Topology,
     /// Comb over each face in its axes; its length says how well the corners agree.
     pub comb: Vec<DVec2>,
+    /// How much skin without comb one patch may have, m².
+    pub most_free_m2: f64,
 }
 
+/// A comb shorter than this (its corners disagree, or hair stands upright) is not followed.
+const FAINT: f64 = 0.05;
+/// Share of the skin that one patch may have of upright hair (`docs/steps/patch.md`, "Upright hair").
+const FREE_SHARE: f64 = 1.0 / 6.0;
+
 impl Surface<'_> {
+    /// Whether triangle `t` has no comb to lie along.
+    pub fn is_free(&self, t: usize) -> bool {
+        self.comb[t].length() < FAINT
+    }
+
     /// The place of corner `k` of triangle `t`: one number for all vertices there.
     pub fn place(&self, t: usize, k: usize) -> u32 {
         self.mesh.position_class[self.mesh.triangles[t][k] as usize]
@@ -48,6 +60,7 @@ pub(super) fn parameterise(mesh: &Mesh, direction: &[Vec3], tile_edge_m: f32, se
         faces: &faces,
         topology: Topology::new(&mesh.triangles, |v| mesh.position_class[v as usize]),
         comb: faces.iter().zip(&mesh.triangles).map(|(f, t)| f.comb(t.map(|v| direction[v as usize]))).collect(),
+        most_free_m2: FREE_SHARE * faces.iter().map(|f| f.area_m2).sum::<f64>(),
     };
     let mut owner = vec![patch::FREE; faces.len()];
     let mut patches = Vec::new();

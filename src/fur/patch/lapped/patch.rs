@@ -50,6 +50,8 @@ pub(super) struct Patch {
     latest: HashMap<u32, u32>,
     /// Where a triangle is in `faces`.
     slots: HashMap<u32, u32>,
+    /// Its skin without comb, m².
+    free_m2: f64,
 }
 
 /// How a triangle would join.
@@ -62,21 +64,21 @@ pub(super) struct Joining {
     pub frame: PatchFrame,
 }
 
-/// A comb shorter than this (its corners disagree) is not followed.
-const FAINT: f64 = 0.05;
 /// Two ways to a place are one vertex when they meet within this share of the triangle's edges there.
 const MEETING: f64 = 0.5;
 
 impl Patch {
     /// The patch of `seed` alone.
-    pub fn new(surface: &Surface, seed: usize) -> Self {
+    ///
+    /// `turn` is how it lies where there is no comb.
+    pub fn new(surface: &Surface, seed: usize, turn: DVec2) -> Self {
         let mut patch = Self::default();
-        let frame = frame(surface, seed, DVec2::X, DVec2::X);
+        let frame = frame(surface, seed, turn, DVec2::X);
         let uv = surface.faces[seed].corners_m().map(|p| frame.turn.rotate(p));
         for (k, uv) in uv.into_iter().enumerate() {
             patch.push_vertex(surface.place(seed, k), uv);
         }
-        patch.push_face(seed, [0, 1, 2], frame);
+        patch.push_face(surface, seed, [0, 1, 2], frame);
         patch
     }
 
@@ -97,7 +99,8 @@ impl Patch {
         let edge_here = (flat[(k + 1) % 3] - flat[k]).normalize_or(DVec2::X);
         let edge_there = (there[j] - there[(j + 1) % 3]).normalize_or(DVec2::X);
         let unfolded = beyond.turn.rotate(edge_there).rotate(conjugate(edge_here));
-        let deviation = beyond.turn.rotate(conjugate(beyond.combed));
+        let deviation =
+            if surface.is_free(other as usize) { DVec2::X } else { beyond.turn.rotate(conjugate(beyond.combed)) };
         let frame = frame(surface, t, unfolded, deviation);
 
         let far = (k + 2) % 3;
@@ -158,7 +161,7 @@ impl Patch {
                 self.push_vertex(surface.place(t, k), joining.uv[k]);
             }
         }
-        self.push_face(t, joining.corners, joining.frame);
+        self.push_face(surface, t, joining.corners, joining.frame);
     }
 
     fn push_vertex(&mut self, place: u32, uv: DVec2) {
@@ -168,15 +171,23 @@ impl Patch {
         self.uv.push(uv);
     }
 
-    fn push_face(&mut self, t: usize, corners: [u32; 3], frame: PatchFrame) {
+    /// Whether triangle `t` is not too much skin without comb for one patch, or `factor` times as much.
+    pub fn has_room(&self, surface: &Surface, t: usize, factor: f64) -> bool {
+        !surface.is_free(t) || self.free_m2 + surface.faces[t].area_m2 <= factor * surface.most_free_m2
+    }
+
+    fn push_face(&mut self, surface: &Surface, t: usize, corners: [u32; 3], frame: PatchFrame) {
         self.slots.insert(t as u32, self.faces.len() as u32);
+        if surface.is_free(t) {
+            self.free_m2 += surface.faces[t].area_m2;
+        }
         self.faces.push(t as u32);
         self.corners.push(corners);
         self.frames.push(frame);
     }
 
     /// Keeps the triangles with a true entry and the vertices they use.
-    pub fn retain(&mut self, keep: &[bool]) {
+    pub fn retain(&mut self, surface: &Surface, keep: &[bool]) {
         let old = std::mem::take(self);
         let mut number = vec![u32::MAX; old.uv.len()];
         for (slot, &face) in old.faces.iter().enumerate().filter(|(slot, _)| keep[*slot]) {
@@ -187,7 +198,7 @@ impl Patch {
                 }
                 number[v as usize]
             });
-            self.push_face(face as usize, corners, old.frames[slot]);
+            self.push_face(surface, face as usize, corners, old.frames[slot]);
         }
     }
 
@@ -213,7 +224,7 @@ impl Patch {
 fn frame(surface: &Surface, t: usize, unfolded: DVec2, deviation: DVec2) -> PatchFrame {
     let comb = surface.comb[t];
     let trust = comb.length();
-    if trust < FAINT {
+    if surface.is_free(t) {
         return PatchFrame { combed: unfolded, trust: 0.0, turn: unfolded };
     }
     let combed = conjugate(comb / trust);
@@ -229,7 +240,7 @@ pub(super) fn fits(surface: &Surface, t: usize, uv: [DVec2; 3], limits: Limits) 
     }
     let comb = surface.comb[t];
     let seen = x * comb.x + y * comb.y;
-    comb.length() < FAINT || libm::atan2(seen.y, seen.x).abs() <= limits.angle_rad
+    surface.is_free(t) || libm::atan2(seen.y, seen.x).abs() <= limits.angle_rad
 }
 
 pub(super) fn conjugate(z: DVec2) -> DVec2 {
