@@ -3,7 +3,7 @@
 use crate::coat::fins::FinParameters;
 use crate::coat::shells::ShellParameters;
 use crate::error::{Error, Result};
-use crate::fur::groom::{Colour, Groom, Guard, Undercoat};
+use crate::fur::groom::{Colour, Groom, Guard, Length, Undercoat};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -30,8 +30,37 @@ pub struct Maps {
 pub struct Region {
     /// Built-in preset or file (relative to this one), whose hair grows there.
     pub preset: String,
-    /// Grey image over the first UV set: how much of that preset is there. Without it, the vertex attribute `_FUR_REGION`.
+    /// Grey image over the first UV set: how much of that preset is there. Without it and `material`, the vertex attribute
+    /// `_FUR_REGION`.
     pub map: Option<PathBuf>,
+    /// Material that is all that preset's; what lies beside it passes into it over `reach`.
+    pub material: Option<String>,
+    /// How far the passage beside a material reaches, 20 mm without it.
+    pub reach: Option<Length>,
+}
+
+impl Region {
+    /// Checks that its place is told once, and how far it reaches.
+    fn check(&self, number: usize) -> Result<()> {
+        let fault = |key: &str, found: String, expected: &str| {
+            Err(Error::usage("a region's place is not clear")
+                .with_field(format!("regions[{number}].{key}"))
+                .with_found(found)
+                .with_expected(expected))
+        };
+        if let (Some(map), Some(_)) = (&self.map, &self.material) {
+            return fault("map", map.display().to_string(), "a map or a material");
+        }
+        match self.reach {
+            Some(_) if self.material.is_none() => {
+                fault("reach", "no material".into(), "a material that it reaches beyond")
+            }
+            Some(reach) if !(reach.metres(1.0) > 0.0 && reach.metres(1.0) < 1e4) => {
+                fault("reach", format!("{reach:?}"), "a length above 0")
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 /// A coat's recipe: one table per step.
@@ -59,7 +88,8 @@ pub struct Preset {
     /// Fin texture.
     pub fins: FinParameters,
     /// `[[regions]]`, at most 8, later ones over earlier ones: `preset`, the name or file (relative to this one) of what grows there,
-    /// and `map`, a grey image over the first UV set that says how much of it; without a map the vertex attribute `_FUR_REGION`.
+    /// and `map`, a grey image over the first UV set that says how much of it; or `material`, which it covers, and `reach`, how far what
+    /// lies beside passes into it; without either the vertex attribute `_FUR_REGION`.
     pub regions: Vec<Region>,
 }
 
@@ -248,6 +278,9 @@ impl Preset {
                 .with_field("regions")
                 .with_found(self.regions.len())
                 .with_expected("at most 8"));
+        }
+        for (i, region) in self.regions.iter().enumerate() {
+            region.check(i)?;
         }
         self.shells.check()?;
         self.fins.check()?;

@@ -7,7 +7,7 @@ use furrier::hybrid::gpu::kernels;
 use furrier::hybrid::gpu::layout::{
     BlocksUniform, KindUniform, LobeUniform, SceneUniform, ViewUniform as CameraUniform,
 };
-use furrier::runtime::gpu::layout::{CoatVertex, FinInstance, Mip, SkinVertex, TileUniform, ViewUniform};
+use furrier::runtime::gpu::layout::{CoatVertex, FinInstance, Mip, PaintUniform, SkinVertex, TileUniform, ViewUniform};
 use furrier::runtime::gpu::pipelines::{FIN, RESOLVE, SHARED, SHELL, SKIN};
 use naga::proc::Layouter;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -95,8 +95,9 @@ fn structs_lie_as_in_rust() {
         (&shell, "View", in_rust!(ViewUniform { clip_from_world, eye, ambient, light_count, lights })),
         (&shell, "Tile", in_rust!(TileUniform { edge_m, height_m, size, layers, mips, tinted, medium_unit_per_m })),
         (&shell, "Mip", in_rust!(Mip { gains })),
-        (&shell, "CoatVertex", in_rust!(CoatVertex { position_m, u, offset_m, v, normal, axis, tint })),
-        (&fin, "FinEdge", in_rust!(FinInstance { ends, u, thickness })),
+        (&shell, "CoatVertex", in_rust!(CoatVertex { position_m, u, offset_m, v, normal, longest, axis, tint, root })),
+        (&shell, "Paint", in_rust!(PaintUniform { has_colour, has_painted })),
+        (&fin, "FinEdge", in_rust!(FinInstance { ends, u, thickness, spacing_m })),
     ] {
         assert_eq!(in_shader(module, name), Some(rust), "{name}");
     }

@@ -143,6 +143,9 @@ fn a_colour_map_decides_the_colour_of_the_coat() {
     let uv = &asset.parts[0].stored.uv_sets[0];
     let linear = |byte: f32| ((byte / 255.0 + 0.055) / 1.055).powf(2.4);
     let (strong, weak) = (linear(200.0), linear(20.0));
+    // The file brings the map along; the tint does not change it.
+    let texture = worn.colour.as_ref().expect("a texture of colour");
+    let image = asset.document.decode_image(texture.image).unwrap().expect("a picture");
     let mut seen = [0; 2];
     for (&base, tint) in worn.base_vertex.iter().zip(&worn.tint) {
         let u = uv[base as usize].x;
@@ -150,6 +153,7 @@ fn a_colour_map_decides_the_colour_of_the_coat() {
         if (u - 0.5).abs() < 0.03 || !(0.03..0.97).contains(&u) {
             continue;
         }
+        let tint = tint.truncate() * texture.sample(&image, uv[base as usize]).truncate();
         let side = usize::from(u > 0.5);
         seen[side] += 1;
         let [own, other] = if side == 0 { [tint.x, tint.z] } else { [tint.z, tint.x] };

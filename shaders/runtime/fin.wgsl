@@ -3,7 +3,7 @@
 #import furrier::light::light_at
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
 #import furrier::constants::{INVISIBLE, LEAST_CLEAR, LEAST_COSINE}
-#import furrier::coat::{CoatVertex, Paint, Root, root_of, depth_of_opacity, presence}
+#import furrier::coat::{CoatVertex, Paint, Root, root_of, depth_of_opacity, presence, closeness}
 
 // Texels along the edge per texel along the hair that one fetch may average.
 const MAX_STRETCH: f32 = 4.0;
@@ -15,6 +15,8 @@ struct FinEdge {
     u: vec2<f32>,
     // Thickness of hair it stands for over the texture's.
     thickness: f32,
+    // The same, m.
+    spacing_m: f32,
 }
 
 @group(2) @binding(0) var<storage, read> vertices: array<CoatVertex>;
@@ -76,7 +78,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> Varyings {
     out.along = normalize(edge + vec3(0.0, 0.0, 1e-20));
     out.across = across / max(size, 1e-20);
     // A slab of hair seen aslant is as much thicker.
-    out.weight = fin.thickness * weight / max(facing, 0.5);
+    out.weight = closeness(length(rise), fin.spacing_m) * fin.thickness * weight / max(facing, 0.5);
     if weight > 0.0 && size > 0.0 {
         out.clip = view.clip_from_world * vec4(out.position_m, 1.0);
     } else {

@@ -5,7 +5,7 @@
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
 #import furrier::constants::{DEEPEST_HAIR, INVISIBLE, LEAST_CLEAR, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
 #import furrier::coat::{CoatVertex, Paint, Root, root_of, Filled, filled_slab, Frame, Medium, Footprint, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
-    lateral, shadow_slant, depth_of_opacity, presence, path_through_slab, footprint, fetch, run_through_slab, gain, medium_of, fin_share}
+    lateral, shadow_slant, depth_of_opacity, presence, path_through_slab, footprint, fetch, run_through_slab, gain, medium_of, fin_share, closeness}
 
 // Which side of the shells this pass draws: the far one first, outer to inner, then the near one, inner to outer.
 override NEAR_SIDE: bool = true;
@@ -46,6 +46,8 @@ struct Varyings {
     @location(11) @interpolate(flat) spread: f32,
     @location(12) root: vec4<f32>,
     @location(13) longest: f32,
+    // Normal of the facet, outwards, and how far it gives way to the smooth one.
+    @location(14) @interpolate(flat) facet: vec4<f32>,
 }
 
 @vertex
@@ -88,6 +90,8 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
     // Which side is seen follows from the offsets, not from the winding, so mirrored parts need no care.
     let face = cross(edge_b, edge_c);
     let outwards = face * sign(dot(face, a.offset_m + b.offset_m + c.offset_m));
+    let around = length(edge_b) + length(edge_c) + length(edge_c - edge_b);
+    out.facet = vec4(normalize(outwards), closeness(length(own.offset_m), length(face) / max(around, 1e-20)));
     var seen_from_outside = dot(outwards, ray_direction(at_a)) < 0.0;
     if DEPTHS == 2u {
         // Hair that leans behind its skin counts as missing.
@@ -127,8 +131,8 @@ struct Met {
 }
 
 fn place_of(in: Varyings, offset_m: vec3<f32>, uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> Place {
-    let normal = normalize(in.normal);
-    // Axes in the plane of the smooth normal, or facets would show.
+    // Axes in the plane of the smooth normal, or facets would show; where they are larger than hair is long they are what there is.
+    let normal = normalize(mix(in.facet.xyz, normalize(in.normal), in.facet.w));
     let x_axis = in.x_axis - normal * dot(normal, in.x_axis);
     let y_axis = in.y_axis - normal * dot(normal, in.y_axis);
     let up = offset_m / tile.height_m;
@@ -144,7 +148,7 @@ fn place_of(in: Varyings, offset_m: vec3<f32>, uv_dx: vec2<f32>, uv_dy: vec2<f32
     // The surface bends away from the ray by half its normal curvature along it, measured in metres of the tile.
     let sideways = x_axis * sweep.direction.x + y_axis * sweep.direction.y;
     let turn = in.x_turn * sweep.direction.x + in.y_turn * sweep.direction.y;
-    let bend_per_m = 0.5 * dot(turn, sideways) / max(dot(normal, at.world_from_tile[2]), LEAST_RISE);
+    let bend_per_m = 0.5 * in.facet.w * dot(turn, sideways) / max(dot(normal, at.world_from_tile[2]), LEAST_RISE);
     return Place(normal, world_ray, at, ray, sweep, bend_per_m, in.uv, uv_dx, uv_dy);
 }
 
@@ -199,7 +203,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 
     let found = met(place, slab);
     let medium = found.medium;
-    let kept = select(1.0, 1.0 - fin_share(dot(place.normal, place.world_ray)), WITH_FINS);
+    let kept = select(1.0, 1.0 - in.facet.w * fin_share(dot(place.normal, place.world_ray)), WITH_FINS);
     let depth = found.depth * present * kept;
     if DEPTHS == 1u {
         return vec4(min(depth, OPAQUE), 0.0, 0.0, 0.0);

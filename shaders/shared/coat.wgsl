@@ -1,7 +1,7 @@
 // A tile on the skin: its textures, its law of opacity, its frame (docs/steps/runtime.md).
 #define_import_path furrier::coat
 
-#import furrier::constants::{FADE_BELOW, GAIN_ANGLES_DEG, LEAST_AXIS, LEAST_BULK, LEAST_CLEAR, LEAST_COSINE, LEAST_DIRECTION,
+#import furrier::constants::{APART, FADE_BELOW, GAIN_ANGLES_DEG, LEAST_AXIS, LEAST_BULK, LEAST_CLEAR, LEAST_COSINE, LEAST_DIRECTION,
     LEAST_EXTINCTION, LEAST_VOLUME, PI}
 
 struct Tile {
@@ -265,4 +265,10 @@ fn fin_share(cos_view: f32) -> f32 {
     }
     let limit = acos(0.5 / sin_view);
     return (2.0 / PI) * (2.0 * sin_view * sin(limit) - limit);
+}
+
+// How far fins stand for the hair around them, which is as far as they stand closer than it is long: `spacing_m` is the skin's
+// area per length of edges, the thickness of the slab that a fin holds.
+fn closeness(hair_m: f32, spacing_m: f32) -> f32 {
+    return min(1.0, hair_m / max(APART * spacing_m, 1e-20));
 }

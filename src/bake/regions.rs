@@ -1,18 +1,24 @@
 //! Several presets on one part: which tile each triangle carries, and where one passes into another.
 
-use super::skin::Groomed;
-use super::{Steps, Task, subset};
+use super::skin::{Groomed, OF_PRESET};
+use super::wear::subset;
+use super::{Steps, Task};
 use crate::asset::image;
 use crate::coat::axes::axes;
 use crate::data::coat::{Blend, CoatPrimitive, Tile};
 use crate::data::fields::Fields;
 use crate::data::maps::sample;
 use crate::data::mesh::Mesh;
+use crate::data::paint::Paint;
 use crate::data::patches::Patches;
+use crate::data::texture::Texture;
 use crate::error::{Error, Result};
+use crate::fur::groom::Length;
 use crate::math::Vec3;
 use crate::preset::{Preset, Region};
-use std::collections::BTreeMap;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+use std::sync::Arc;
 
 /// Shares below this are none: eight bits of a map tell no less.
 const LEAST: f32 = 1.0 / 255.0;
@@ -43,14 +49,14 @@ pub(super) fn wear_all(
     (presets, tiles): (&[Preset], &[Tile]),
     steps: &mut Steps<'_>,
 ) -> Result<Vec<(usize, CoatPrimitive)>> {
-    let shares = shares(own.mesh(), &task.preset.regions)?;
+    let shares = shares(task, own)?;
     let mut fields = vec![own.fields.clone()];
     for preset in presets {
         let groomed = steps.run("groom", || task.groom(preset))?;
         fields.push(groomed.cut(|part| parts.contains(&(part as usize))).fields);
     }
     let axes = axes(own.mesh(), &own.fields.direction, patches);
-    let mixed = Mixed::new(&fields, tiles, &shares);
+    let mixed = Mixed::new(own.mesh(), &fields, tiles, &shares);
     // Triangles by their part and what they carry.
     let mut groups: BTreeMap<(u32, usize, Option<usize>), Vec<usize>> = BTreeMap::new();
     for (t, triangle) in own.mesh().triangles.iter().enumerate() {
@@ -86,22 +92,25 @@ pub(super) fn wear_all(
 }
 
 /// Per vertex, the share of the preset's own tile and of each region's; they sum to 1.
-fn shares(mesh: &Mesh, regions: &[Region]) -> Result<Vec<Vec<f32>>> {
+fn shares(task: &Task<'_>, own: &Groomed) -> Result<Vec<Vec<f32>>> {
+    let mesh = own.mesh();
     let mut shares = vec![vec![1.0]; mesh.positions_m.len()];
-    for (i, region) in regions.iter().enumerate() {
+    for (i, region) in task.preset.regions.iter().enumerate() {
         let fault = |what: &str, expected: &str| {
             let error = Error::usage(what).with_field(format!("regions[{i}].map")).with_expected(expected);
             Err(error.with_found(region.map.as_ref().map_or("none".into(), |map| map.display().to_string())))
         };
-        let of: Vec<f32> = match (&region.map, mesh.uv_sets.first(), &mesh.fur_region) {
-            (Some(map), Some(uv), _) => {
+        let of: Vec<f32> = match (&region.material, &region.map, mesh.uv_sets.first(), &mesh.fur_region) {
+            (Some(material), ..) => beside(task, own, material, region.reach, i)?,
+            (_, Some(map), Some(uv), _) => {
                 let image = image::load(map)?;
                 uv.iter().map(|&uv| sample(&image, uv).x).collect()
             }
-            (Some(_), None, _) => return fault("a region's map needs texture coordinates", "a mesh with a UV set"),
-            (None, _, Some(attribute)) => attribute.clone(),
-            (None, _, None) => {
-                return fault("a region has no place", "a map, or a mesh with the vertex attribute _FUR_REGION");
+            (_, Some(_), None, _) => return fault("a region's map needs texture coordinates", "a mesh with a UV set"),
+            (_, None, _, Some(attribute)) => attribute.clone(),
+            (_, None, _, None) => {
+                let expected = "a map, a material, or a mesh with the vertex attribute _FUR_REGION";
+                return fault("a region has no place", expected);
             }
         };
         // Vertices at one point have one share, or shells would crack where texture coordinates do.
@@ -121,6 +130,71 @@ fn shares(mesh: &Mesh, regions: &[Region]) -> Result<Vec<Vec<f32>>> {
     Ok(shares)
 }
 
+/// Per vertex, 1 on a material and its border, falling to 0 over `reach` along the edges of what lies beside it.
+fn beside(task: &Task<'_>, own: &Groomed, material: &str, reach: Option<Length>, i: usize) -> Result<Vec<f32>> {
+    let mesh = own.mesh();
+    let class = |v: u32| mesh.position_class[v as usize] as usize;
+    let mut away_m = vec![f32::INFINITY; mesh.positions_m.len()];
+    let mut waiting = BinaryHeap::new();
+    for (triangle, &part) in mesh.triangles.iter().zip(&own.skin.part_of) {
+        if task.asset.parts[part as usize].material_name == material {
+            for &v in triangle {
+                away_m[class(v)] = 0.0;
+                waiting.push((Reverse(0), class(v)));
+            }
+        }
+    }
+    if waiting.is_empty() {
+        return Err(Error::usage("a region's material is not among those that its preset furs")
+            .with_field(format!("regions[{i}].material"))
+            .with_found(material)
+            .with_expected(format!("one of: {}", task.materials(task.parts))));
+    }
+    let mut around: Vec<Vec<usize>> = vec![Vec::new(); away_m.len()];
+    for [a, b, c] in mesh.triangles.iter().map(|t| t.map(class)) {
+        for (from, to) in [(a, b), (b, c), (c, a), (b, a), (c, b), (a, c)] {
+            around[from].push(to);
+        }
+    }
+    // Distances are not negative, so their bits are in their order.
+    while let Some((Reverse(bits), v)) = waiting.pop() {
+        if bits > away_m[v].to_bits() {
+            continue;
+        }
+        for &next in &around[v] {
+            let next_m = away_m[v] + mesh.positions_m[v].distance(mesh.positions_m[next]);
+            if next_m < away_m[next] {
+                away_m[next] = next_m;
+                waiting.push((Reverse(next_m.to_bits()), next));
+            }
+        }
+    }
+    let reach_m = reach.unwrap_or(Length::Mm(20.0)).metres(task.scale.diagonal_m as f32);
+    let share = |&class: &u32| {
+        let x = (1.0 - away_m[class as usize] / reach_m).clamp(0.0, 1.0);
+        x * x * (3.0 - 2.0 * x)
+    };
+    Ok(mesh.position_class.iter().map(share).collect())
+}
+
+/// The colours that all presets take from the same textures; none where one has another. Lengths and densities are the
+/// vertices', as they are mixed.
+fn common(fields: &[Fields]) -> Option<Arc<Paint>> {
+    let first = fields[0].paint.as_ref()?;
+    let colours = |paint: &Paint| -> Vec<Option<Texture>> {
+        paint.parts.iter().map(|part| part.colour.as_ref().map(|(texture, _)| texture.clone())).collect()
+    };
+    let own = colours(first);
+    let of_asset = own.iter().flatten().all(|texture| texture.index != OF_PRESET);
+    let alike = |fields: &Fields| fields.paint.as_ref().is_some_and(|paint| colours(paint) == own);
+    if !of_asset || !fields.iter().all(alike) {
+        return None;
+    }
+    let mut paint = Paint::clone(first);
+    paint.parts.iter_mut().for_each(|part| part.maps = None);
+    Some(Arc::new(paint))
+}
+
 /// Fields in which every tile has its share, so that what lies side by side goes on.
 struct Mixed {
     /// Lengths here are those of the offsets, m.
@@ -128,8 +202,14 @@ struct Mixed {
 }
 
 impl Mixed {
-    fn new(fields: &[Fields], tiles: &[Tile], shares: &[Vec<f32>]) -> Self {
+    fn new(mesh: &Mesh, fields: &[Fields], tiles: &[Tile], shares: &[Vec<f32>]) -> Self {
         let count = shares.len();
+        // What is painted counts at the vertices: the longest around them would be another preset's too.
+        let length = |fields: &Fields, v: usize| {
+            let Some(paint) = &fields.paint else { return fields.length[v] };
+            let longest = paint.longest[v];
+            if longest > 0.0 { fields.length[v] * (paint.at_vertex(mesh, v).length / longest).min(1.0) } else { 0.0 }
+        };
         let sum = |v: usize, of: &dyn Fn(usize) -> f32| -> f32 {
             (0..tiles.len()).map(|tile| shares[v][tile] * of(tile)).sum()
         };
@@ -138,13 +218,13 @@ impl Mixed {
         };
         Self {
             fields: Fields {
-                length: (0..count).map(|v| sum(v, &|t| tiles[t].height_m * fields[t].length[v])).collect(),
+                length: (0..count).map(|v| sum(v, &|t| tiles[t].height_m * length(&fields[t], v))).collect(),
                 density: (0..count).map(|v| sum(v, &|t| fields[t].density[v])).collect(),
                 direction: fields[0].direction.clone(),
                 lean: (0..count).map(|v| sum3(v, &|t| fields[t].lean[v]).normalize_or(fields[0].lean[v])).collect(),
                 clump: fields[0].clump.clone(),
                 tint: (0..count).map(|v| sum3(v, &|t| fields[t].tint[v])).collect(),
-                paint: None,
+                paint: common(fields),
                 partings: fields[0].partings.clone(),
             },
         }

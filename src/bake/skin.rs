@@ -19,6 +19,7 @@ use crate::fur::groom::{ColourSource, fields, parted};
 use crate::math::{Mat3, Vec3, Vec4};
 use crate::preset::{self, Preset};
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 /// Skin, fields, and what to tell the user of them.
@@ -210,10 +211,13 @@ fn paint(
         let texture = texture.clone().filter(|texture| texture.uv_set < part.stored.uv_sets.len());
         let colour = match texture {
             Some(texture) => {
-                if !images.contains_key(&texture.image) {
-                    images.insert(texture.image, asset.document.decode_image(texture.image)?.map(Arc::new));
-                }
-                images[&texture.image].clone().map(|image| (texture, image))
+                let image = match images.entry(texture.image) {
+                    Entry::Occupied(known) => known.get().clone(),
+                    Entry::Vacant(slot) => {
+                        slot.insert(asset.document.decode_image(texture.image)?.map(Arc::new)).clone()
+                    }
+                };
+                image.map(|image| (texture, image))
             }
             None => None,
         };

@@ -5,7 +5,7 @@ use crate::coats;
 use furrier::coat::axes::Stand;
 use furrier::data::coat::Tile;
 use furrier::data::shell::guards::{FADE_BELOW, LEAST_COSINE, MOST_TAPS};
-use furrier::data::shell::{HairMedium, Incidence, Stack, depth_of_opacity};
+use furrier::data::shell::{Filled, HairMedium, Incidence, Stack, closeness, depth_of_opacity};
 use furrier::gpu::{Binding, Gpu, Source, Text};
 use furrier::math::{DVec2, Mat3, Mat4, Vec2, Vec3, Vec4, orthonormal_basis};
 use furrier::runtime::Frame;
@@ -14,7 +14,7 @@ use furrier::runtime::gpu::pipelines::SHARED;
 
 /// Vectors per input, in and out.
 const INPUTS: usize = 11;
-const OUTPUTS: usize = 7;
+const OUTPUTS: usize = 9;
 
 /// Evaluates the law at what the inputs say.
 pub const MAIN: Source = Source {
@@ -24,7 +24,7 @@ pub const MAIN: Source = Source {
 #import furrier::constants::MOST_TAPS
 #import furrier::view::ray_direction
 #import furrier::coat::{Medium, Ray, frame, hair_frame, ray_in_tile, lateral, across, shadow_slant, path_through_slab, gain, presence,
-    run_through_slab, depth_of_opacity, fin_share, footprint, medium_of}
+    run_through_slab, depth_of_opacity, fin_share, footprint, medium_of, root_of, filled_slab, closeness}
 
 @group(2) @binding(0) var<storage, read> inputs: array<vec4<f32>>;
 @group(2) @binding(1) var<storage, read_write> outputs: array<vec4<f32>>;
@@ -58,7 +58,11 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let spot = footprint(pixel.xy, pixel.zw, slope, MOST_TAPS);
     let stored = medium_of(inputs[i + 10u]);
 
-    let first = 7u * id.x;
+    let chance = inputs[i + 10u];
+    let root = root_of(chance, 0.2 + chance.z);
+    let filled = filled_slab(1u + u32(6.99 * chance.w), chance.x);
+
+    let first = 9u * id.x;
     outputs[first] = vec4(straight.direction, straight.cosine);
     outputs[first + 1u] = vec4(seen.direction, hair.volume);
     outputs[first + 2u] = vec4(lateral(hair, ray, medium), across(hair, ray, medium), shadow_slant(hair, light, medium), texture.volume);
@@ -66,6 +70,8 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     outputs[first + 4u] = vec4(gain(level, cosine), presence(up * slab_m), depth_of_opacity(opacity), fin_share(cosine));
     outputs[first + 5u] = vec4(spot.line, spot.taps, spot.level);
     outputs[first + 6u] = vec4(spot.round_level, stored.extinction, stored.tangent.x, dot(ray_direction(light), normal));
+    outputs[first + 7u] = vec4(f32(filled.layer), filled.slab_m, filled.slabs, closeness(chance.x, chance.y));
+    outputs[first + 8u] = vec4(root.density, root.share, 0.0, 0.0);
 }
 ",
     ),
@@ -250,6 +256,18 @@ pub fn law(shared: &[Source]) -> Vec<String> {
             let path = reference::path_through_slab(steep, fall, slab, bend);
             worst.note(i, "path through a slab", (f64::from(out[3].z) / path) as f32, 1.0);
         }
+        let chance = of(i)[0];
+        let filled = Filled::new(1 + (6.99 * chance.w) as u32, chance.x, tile.shells.layers, tile.height_m);
+        // Where a slab just ends at a layer, roundings decide which it is.
+        let middle = ((6.99 * chance.w).floor()) / chance.x + 0.5 * filled.slabs;
+        if (middle - middle.round()).abs() > 1e-3 {
+            worst.note(i, "layer of a filled slab", out[7].x / 8.0, filled.layer as f32 / 8.0);
+        }
+        worst.note(i, "filled slab", out[7].y / tile.height_m, filled.slab_m / tile.height_m);
+        worst.note(i, "slabs filled", out[7].z / 8.0, filled.slabs / 8.0);
+        worst.note(i, "closeness", out[7].w, closeness(chance.x, chance.y));
+        worst.note(i, "density at the root", out[8].x, chance.x);
+        worst.note(i, "length at the root", out[8].y, (chance.y / (0.2 + chance.z)).min(1.0));
         let mip = level(i) as usize;
         let degrees = f64::from(cosine(i)).acos().to_degrees();
         let of_mip = |mip: usize| reference::gain(&tile.shells.gains[mip.min(mips - 1)], degrees) as f32;

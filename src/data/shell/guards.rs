@@ -27,3 +27,6 @@ pub const FADE_BELOW: f32 = 0.01;
 pub const INVISIBLE: f32 = 0.002;
 /// Taps of the longest fetch, as graphics hardware has them.
 pub const MOST_TAPS: f32 = 16.0;
+/// Fins and smooth normals count in full where edges stand closer than half a hair's length, by the skin's area per length of
+/// edges; less where facets are larger.
+pub const APART: f32 = 2.0;

@@ -8,10 +8,12 @@
 
 pub mod guards;
 mod incidence;
+mod root;
 mod stack;
 mod texel;
 
 pub use incidence::Incidence;
+pub use root::{Filled, closeness};
 pub use stack::Stack;
 pub use texel::{HairMedium, Texel, depth_of_byte, depth_of_opacity, signed, unorm};
 

@@ -3,7 +3,7 @@
 use crate::data::coat::GAIN_ANGLES_DEG;
 use crate::data::light::NEAREST_M;
 use crate::data::shell::guards::{
-    FADE_BELOW, INVISIBLE, LEAST_AXIS, LEAST_BULK, LEAST_CLEAR, LEAST_COSINE, LEAST_DIRECTION, LEAST_EXTINCTION,
+    APART, FADE_BELOW, INVISIBLE, LEAST_AXIS, LEAST_BULK, LEAST_CLEAR, LEAST_COSINE, LEAST_DIRECTION, LEAST_EXTINCTION,
     LEAST_RISE, LEAST_UV_AREA, LEAST_VOLUME, MOST_SPREAD, MOST_TAPS,
 };
 use crate::gpu::Constant::{self, F32, F32s, U32};
@@ -11,7 +11,8 @@ use crate::runtime::draw_list::MAX_LIGHTS;
 use crate::volume::scene::DEEPEST_HAIR;
 
 /// The module `furrier::constants` of the runtime's shaders.
-pub const CONSTANTS: [Constant; 18] = [
+pub const CONSTANTS: [Constant; 19] = [
+    F32("APART", APART),
     F32("PI", std::f32::consts::PI),
     F32("NEAREST_M", NEAREST_M),
     U32("MAX_LIGHTS", MAX_LIGHTS as u32),

@@ -166,12 +166,15 @@ pub struct FinInstance {
     pub u: [f32; 2],
     /// Thickness over the texture's.
     pub thickness: f32,
-    pub(super) _pad0: f32,
+    /// Thickness of hair that it stands for, m.
+    pub spacing_m: f32,
 }
 
-impl From<&FinEdge> for FinInstance {
-    fn from(edge: &FinEdge) -> Self {
-        Self { ends: edge.ends, u: edge.u, thickness: edge.thickness, _pad0: 0.0 }
+impl FinInstance {
+    /// A fin whose texture holds hair `texture_m` thick.
+    pub fn new(edge: &FinEdge, texture_m: f32) -> Self {
+        let spacing_m = edge.thickness * texture_m;
+        Self { ends: edge.ends, u: edge.u, thickness: edge.thickness, spacing_m }
     }
 }
 

@@ -42,7 +42,11 @@ impl<'a> Prepared<'a> {
             textures.add(gpu, fur.painted, false)?;
         }
         let skins = resources::skins(gpu, layouts, &scene.skins, &textures);
-        let furs: Vec<_> = scene.furs.iter().filter_map(|fur| GpuFur::new(gpu, layouts, fur, &textures)).collect();
+        let furs: Vec<_> = scene
+            .furs
+            .iter()
+            .filter_map(|fur| GpuFur::new(gpu, layouts, fur, renderer.tiles[fur.tile].fin_thickness_m, &textures))
+            .collect();
         let geometry =
             skins.iter().map(|skin| skin.geometry_bytes).chain(furs.iter().map(|fur| fur.bytes)).sum::<u64>();
         Ok(Self {

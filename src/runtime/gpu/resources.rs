@@ -55,6 +55,8 @@ pub struct GpuTile {
     pub fin: wgpu::BindGroup,
     /// Layers, the skin counted.
     pub layers: u32,
+    /// Thickness of the hair that its fin texture holds, m.
+    pub fin_thickness_m: f32,
     /// Texture memory.
     pub bytes: u64,
 }
@@ -102,7 +104,7 @@ impl GpuTile {
             &[wgpu::BindingResource::Sampler(&fin_sampler), view(&fin_albedo), view(&fin_tangent)],
         );
         let bytes = [&albedo, &medium, &ends, &fin_albedo, &fin_tangent].iter().map(|texture| texture.bytes).sum();
-        Ok(Self { group, fin, layers: shells.layers, bytes })
+        Ok(Self { group, fin, layers: shells.layers, fin_thickness_m: tile.fin.thickness_m, bytes })
     }
 }
 
@@ -240,10 +242,16 @@ pub struct GpuFur {
 }
 
 impl GpuFur {
-    /// Uploads `fur`, whose textures were added; none without them.
-    pub fn new(gpu: &Gpu, layouts: &Layouts, fur: &CoatMesh<'_>, textures: &Textures<'_>) -> Option<Self> {
+    /// Uploads `fur`, whose textures were added; none without them. Its tile's fin texture holds hair `fin_texture_m` thick.
+    pub fn new(
+        gpu: &Gpu,
+        layouts: &Layouts,
+        fur: &CoatMesh<'_>,
+        fin_texture_m: f32,
+        textures: &Textures<'_>,
+    ) -> Option<Self> {
         let vertices = CoatVertex::of(fur);
-        let fins: Vec<FinInstance> = fur.fins.iter().map(FinInstance::from).collect();
+        let fins: Vec<FinInstance> = fur.fins.iter().map(|fin| FinInstance::new(fin, fin_texture_m)).collect();
         let bytes = bytes_of(&vertices) + bytes_of(fur.triangles) + bytes_of(&fins);
         let vertices = gpu.buffer("coat vertices", &vertices, wgpu::BufferUsages::STORAGE);
         let indices = gpu.buffer("coat indices", fur.triangles, wgpu::BufferUsages::STORAGE);

@@ -17,7 +17,7 @@ use super::measure::measure;
 use crate::data::mesh::Mesh;
 use crate::data::patches::Patches;
 use crate::data::topology::Topology;
-use crate::math::{DVec2, Vec3};
+use crate::math::{DVec2, Vec2, Vec3};
 use patch::Patch;
 use std::collections::HashMap;
 
@@ -75,10 +75,39 @@ pub(super) fn parameterise(mesh: &Mesh, direction: &[Vec3], tile_edge_m: f32, se
     offset::settle(mesh, &surface.topology, seed, &mut result);
     stitch::stitch(&surface, f64::from(tile_edge_m), &mut result);
     result.stats = measure(mesh, &surface.topology, &faces, direction, f64::from(tile_edge_m), &result);
-    result
+    on_vertices(mesh, result)
 }
 
-/// Coat vertices: one per flat vertex of a patch and mesh vertex there, so that the mesh's own seams stay.
+/// The same on coat vertices of their own for every mesh vertex at a place, so that the mesh's own seams stay.
+fn on_vertices(mesh: &Mesh, places: Patches) -> Patches {
+    let mut made: HashMap<(u32, u32), u32> = HashMap::new();
+    let mut old = Vec::new();
+    let mut base_vertex = Vec::new();
+    let mut triangles = Vec::with_capacity(places.triangles.len());
+    for (triangle, at_places) in mesh.triangles.iter().zip(&places.triangles) {
+        triangles.push(std::array::from_fn(|k| {
+            *made.entry((at_places[k], triangle[k])).or_insert_with(|| {
+                old.push(at_places[k] as usize);
+                base_vertex.push(triangle[k]);
+                base_vertex.len() as u32 - 1
+            })
+        }));
+    }
+    let at = |list: &[Vec2]| -> Vec<Vec2> {
+        if list.is_empty() { Vec::new() } else { old.iter().map(|&v| list[v]).collect() }
+    };
+    Patches {
+        base_vertex,
+        uv: at(&places.uv),
+        chance_uv: at(&places.chance_uv),
+        patch: old.iter().map(|&v| places.patch[v]).collect(),
+        triangles,
+        ..places
+    }
+}
+
+/// Coat vertices: one per flat vertex of a patch. What is between patches depends on places alone: where the mesh keeps several
+/// vertices in one place does not matter to hair.
 fn assemble(mesh: &Mesh, patches: &[Patch], owner: &[u32], tile_edge_m: f64) -> Patches {
     let mut number = vec![u32::MAX; patches.len()];
     let mut used = 0;
@@ -89,7 +118,7 @@ fn assemble(mesh: &Mesh, patches: &[Patch], owner: &[u32], tile_edge_m: f64) -> 
         }
     }
     let mut result = Patches::default();
-    let mut made: HashMap<(u32, u32, u32), u32> = HashMap::new();
+    let mut made: HashMap<(u32, u32), u32> = HashMap::new();
     for (t, triangle) in mesh.triangles.iter().enumerate() {
         let home = owner[t];
         let patch = &patches[home as usize];
@@ -99,8 +128,8 @@ fn assemble(mesh: &Mesh, patches: &[Patch], owner: &[u32], tile_edge_m: f64) -> 
             used += 1;
         }
         result.triangles.push(std::array::from_fn(|k| {
-            *made.entry((home, corners[k], triangle[k])).or_insert_with(|| {
-                result.base_vertex.push(triangle[k]);
+            *made.entry((home, corners[k])).or_insert_with(|| {
+                result.base_vertex.push(mesh.position_class[triangle[k] as usize]);
                 result.patch.push(number[home as usize]);
                 result.uv.push((patch.uv[corners[k] as usize] / tile_edge_m).as_vec2());
                 result.base_vertex.len() as u32 - 1

@@ -64,9 +64,6 @@ pub(super) fn stitch(surface: &Surface, tile_edge_m: f64, patches: &mut Patches)
     let turned_over =
         |patches: &Patches, t: usize| faces[t].jacobian(flat(patches, t)).is_some_and(|[x, y]| x.perp_dot(y) <= 0.0);
     let skin = StitchedSkin { laplacian: Laplacian::new(faces, fade_m(faces, tile_edge_m), patches), before: &before };
-    // Where the skin itself keeps vertices apart in one place, the texture goes on and shall.
-    let own = edges(topology, patches).filter(|edge| edge.ends[0] != edge.ends[1] && edge.joined(patches));
-    let own: Vec<Weld> = own.map(|edge| Weld { edge, whole: IVec2::ZERO, off: 0.0 }).collect();
     let mut held: Vec<Weld> = Vec::new();
     for round in 0..ROUNDS {
         let near = NEAR.get(round).copied().unwrap_or(0.0);
@@ -74,7 +71,7 @@ pub(super) fn stitch(surface: &Surface, tile_edge_m: f64, patches: &mut Patches)
         tried.sort_by(|a, b| a.off.total_cmp(&b.off).then(a.edge.edges.cmp(&b.edge.edges)));
         open.retain(|edge| Weld::near(patches, edge, near).is_none());
         held.append(&mut tried);
-        skin.spread(own.iter().chain(&held), patches);
+        skin.spread(held.iter(), patches);
         let left = bad(patches);
         let turned = left.iter().any(|&t| turned_over(patches, t));
         if turned || left.len() > faces.len() / FEW || near > 0.0 && !left.is_empty() {

@@ -1,10 +1,9 @@
-//! A skin cut so finely that its vertices tell what is painted on it (`docs/steps/paint.md`): what fills the shell is interpolated
-//! between vertices, on every device and in the reference alike.
+//! Cuts triangles in rounds, neighbours along the same edges.
 
+use super::{Cut, Finest, Origin, Refined};
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::data::paint::{Paint, PaintedPoint};
-use crate::data::strands::Root;
 use crate::math::{Vec2, Vec3};
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
@@ -16,68 +15,12 @@ const MOST_POINTS: u32 = 12;
 /// Edges are not cut to less than this share of a texel: between texels nothing is told apart.
 const OF_TEXEL: f32 = 0.5;
 
-/// How far a skin is cut.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Finest {
-    /// Edges are not cut to less than this, m.
-    pub edge_m: f32,
-    /// Most triangles that are made.
-    pub triangles: usize,
-}
-
-/// Some triangle of the skin before it was cut, and a point of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Origin {
-    /// The triangle.
-    pub triangle: u32,
-    /// Barycentric coordinates.
-    pub b: Vec3,
-}
-
-/// A skin that was cut.
-#[derive(Clone, Debug)]
-pub struct Refined {
-    /// Its mesh.
-    pub mesh: Mesh,
-    /// The fields on it, without paint: vertices hold it.
-    pub fields: Fields,
-    /// Per vertex, where it lies on the skin before.
-    pub origin: Vec<Origin>,
-    /// Per triangle, which of the skin's it is a piece of.
-    pub piece_of: Vec<u32>,
-    /// Whether there is more to see than could be cut out.
-    pub coarse: bool,
-    /// Triangles as they were cut: the first are the skin's, pieces follow in the order of cutting.
-    cuts: Vec<Cut>,
-    /// Vertices in the middle of edges, by their ends.
-    middles: HashMap<[u32; 2], u32>,
-}
-
-/// A triangle, whole or cut.
-#[derive(Clone, Debug)]
-struct Cut {
-    corners: [u32; 3],
-    parent: u32,
-    /// Its pieces, or none.
-    pieces: Vec<u32>,
-}
-
-/// Cuts triangles on which what is painted differs from what lies between their vertices, as far as `finest` says; `None` where
-/// none does. A posed mesh is cut as in its rest pose.
-pub fn refine(mesh: &Mesh, fields: &Fields, finest: Finest) -> Option<Refined> {
-    let paint = fields.paint.as_deref()?;
-    let skin = Painting { mesh, fields, paint };
-    let mut cutter = Cutter::new(skin, finest);
-    while cutter.round() {}
-    if cutter.cuts.len() == mesh.triangles.len() { None } else { Some(cutter.finish()) }
-}
-
 /// A skin with what is painted on it.
 #[derive(Clone, Copy)]
-struct Painting<'a> {
-    mesh: &'a Mesh,
-    fields: &'a Fields,
-    paint: &'a Paint,
+pub(super) struct Painting<'a> {
+    pub mesh: &'a Mesh,
+    pub fields: &'a Fields,
+    pub paint: &'a Paint,
 }
 
 impl Painting<'_> {
@@ -120,12 +63,13 @@ fn between(points: [&PaintedPoint; 3], b: Vec3) -> PaintedPoint {
     }
 }
 
-struct Cutter<'a> {
+/// A skin that is being cut.
+pub(super) struct Cutter<'a> {
     skin: Painting<'a>,
     finest: Finest,
     /// Per triangle of the skin, about how far its texels are apart.
     texel_m: Vec<f32>,
-    cuts: Vec<Cut>,
+    pub cuts: Vec<Cut>,
     /// Triangles of the last round.
     fresh: Vec<u32>,
     origin: Vec<Origin>,
@@ -141,7 +85,8 @@ struct Cutter<'a> {
 }
 
 impl<'a> Cutter<'a> {
-    fn new(skin: Painting<'a>, finest: Finest) -> Self {
+    /// Not cut yet.
+    pub fn new(skin: Painting<'a>, finest: Finest) -> Self {
         let mesh = skin.mesh;
         let mut origin = vec![Origin { triangle: 0, b: Vec3::ZERO }; mesh.positions_m.len()];
         for (t, triangle) in mesh.triangles.iter().enumerate() {
@@ -227,7 +172,7 @@ impl<'a> Cutter<'a> {
     }
 
     /// Cuts what shows in the triangles of the last round, and what lies across their edges; whether anything was cut.
-    fn round(&mut self) -> bool {
+    pub fn round(&mut self) -> bool {
         let wanted: Vec<u32> = self.fresh.par_iter().copied().filter(|&t| self.shows(&self.cuts[t as usize])).collect();
         if wanted.is_empty() {
             return false;
@@ -301,7 +246,8 @@ impl<'a> Cutter<'a> {
         number
     }
 
-    fn finish(self) -> Refined {
+    /// What came of it.
+    pub fn finish(self) -> Refined {
         let Painting { mesh, fields, .. } = self.skin;
         let at3 = |list: &[Vec3], origin: &Origin| {
             let [p, q, r] = mesh.triangles[origin.triangle as usize].map(|v| list[v as usize]);
@@ -351,69 +297,4 @@ impl<'a> Cutter<'a> {
             middles: self.middles,
         }
     }
-}
-
-impl Refined {
-    /// Takes roots on the skin before to the pieces that they lie on.
-    pub fn move_roots(&self, roots: &mut [Root]) {
-        let mut number = vec![0; self.cuts.len()];
-        self.cuts
-            .iter()
-            .enumerate()
-            .filter(|(_, cut)| cut.pieces.is_empty())
-            .zip(0..)
-            .for_each(|((t, _), n)| number[t] = n);
-        roots.par_iter_mut().for_each(|root| {
-            let [x, y] = root.barycentric;
-            let (mut at, mut b) = (root.triangle as usize, Vec3::new(x, y, 1.0 - x - y));
-            while let Some((piece, inner)) = self.piece_at(at, b) {
-                (at, b) = (piece, inner);
-            }
-            *root = Root { triangle: number[at], barycentric: [b.x, b.y] };
-        });
-    }
-
-    /// The piece of a triangle that a point of it lies on, and where; `None` where it is whole.
-    fn piece_at(&self, t: usize, b: Vec3) -> Option<(usize, Vec3)> {
-        let whole = &self.cuts[t];
-        let inside = |piece: &u32| {
-            let corners = self.cuts[*piece as usize].corners;
-            // Corners of pieces are corners of the whole, or lie in the middle of its edges.
-            let of = corners.map(|v| self.within(whole, v));
-            (*piece as usize, barycentric(of, b))
-        };
-        let least = |(_, b): &(usize, Vec3)| b.min_element();
-        let found = whole.pieces.iter().map(inside).max_by(|a, b| least(a).total_cmp(&least(b)))?;
-        let clamped = found.1.max(Vec3::ZERO);
-        Some((found.0, clamped / clamped.element_sum().max(f32::MIN_POSITIVE)))
-    }
-
-    /// A vertex of a triangle's pieces in its barycentric coordinates.
-    fn within(&self, whole: &Cut, v: u32) -> Vec3 {
-        let mut b = Vec3::ZERO;
-        if let Some(k) = whole.corners.iter().position(|&corner| corner == v) {
-            b[k] = 1.0;
-            return b;
-        }
-        for k in 0..3 {
-            let [p, q] = [whole.corners[k], whole.corners[(k + 1) % 3]];
-            if self.middle_of(p, q) == Some(v) {
-                (b[k], b[(k + 1) % 3]) = (0.5, 0.5);
-            }
-        }
-        b
-    }
-
-    fn middle_of(&self, p: u32, q: u32) -> Option<u32> {
-        self.middles.get(&[p.min(q), p.max(q)]).copied()
-    }
-}
-
-/// A point's coordinates in the triangle between three others, all in coordinates of one triangle.
-fn barycentric([p, q, r]: [Vec3; 3], at: Vec3) -> Vec3 {
-    let flat = |v: Vec3| Vec2::new(v.x, v.y);
-    let (a, b, c) = (flat(q - p), flat(r - p), flat(at - p));
-    let area = a.perp_dot(b);
-    let (v, w) = (c.perp_dot(b) / area, a.perp_dot(c) / area);
-    Vec3::new(1.0 - v - w, v, w)
 }
