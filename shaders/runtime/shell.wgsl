@@ -12,7 +12,7 @@ override NEAR_SIDE: bool = true;
 // Whether fins are drawn too and take their share.
 override WITH_FINS: bool = true;
 // What is drawn: 0 hair; 1 the mean optical depth of a slab, added up in red; 2 on the skin itself that of all slabs, as they
-// would lie over it on a plane, in green, and 1 in blue.
+// would lie over it on a plane, in green, and 1 in blue; nothing where root.x is above 0.
 override DEPTHS: u32 = 0u;
 // Deeper is never seen through.
 const OPAQUE: f32 = 4.0;
@@ -194,6 +194,10 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let place = place_of(in, offset_m, uv_dx, uv_dy);
     let present = mix(1.0, in.tint.w * root.density, tile.tinted) * presence(offset_m);
     if DEPTHS == 2u {
+        // Whether hair lies over skin beside a border of the coat hangs on which way it leans.
+        if in.root.x > 0.0 {
+            discard;
+        }
         var expected = 0.0;
         for (var layer = 1u; layer < tile.layers; layer++) {
             expected += met(place, filled_slab(layer, root.share)).depth * present;

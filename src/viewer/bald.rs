@@ -1,7 +1,10 @@
 //! Where skin that should be furred is seen with too little hair over it (`docs/steps/runtime.md`, "Bald skin").
 
-use crate::math::Vec3;
-use crate::runtime::Picture;
+use crate::math::{Vec3, Vec4};
+use crate::runtime::{CoatMesh, DrawList, Picture};
+use std::borrow::Cow;
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashMap};
 
 /// Less than this share of the hair that the model grows there is bald.
 const BALD: f32 = 0.5;
@@ -11,6 +14,9 @@ const UNSEEN: f32 = 4.0;
 const WHOLE: f32 = 0.99;
 /// Skin over which the model grows next to nothing is bare, not bald.
 const LEAST: f32 = 0.05;
+
+/// Cosine between the faces beside an edge below which they are the two sides of a sheet.
+const BACK: f32 = -0.98;
 
 /// Colours of a picture of it: bald skin, skin with as much hair as there should be, everything else.
 const COLOURS: [Vec3; 3] = [Vec3::new(0.8, 0.02, 0.02), Vec3::new(0.2, 0.45, 0.2), Vec3::splat(0.3)];
@@ -59,4 +65,74 @@ pub fn picture(hair: &Picture, alpha: &Picture) -> Picture {
     };
     let pixels = hair.pixels.iter().zip(&alpha.pixels).map(colour).collect();
     Picture { size: hair.size, pixels, depth_m: alpha.depth_m.clone() }
+}
+
+/// `scene` with skin beside borders of the coat marked, as far as hair is long: it is left out, as hair that leans away from
+/// a border leaves it as free as the model does.
+pub fn marked<'a>(scene: &DrawList<'a>) -> DrawList<'a> {
+    let away_m = away_from_borders(&scene.furs);
+    let mark = |(fur, away_m): (&CoatMesh<'a>, Vec<f32>)| {
+        let root = |(v, away_m): (usize, f32)| {
+            let painted = fur.root.get(v).map_or(Vec4::ZERO, |root| Vec4::new(0.0, 0.0, root.z, root.w));
+            let near = 1.0 - away_m / fur.offsets_m[v].length().max(f32::MIN_POSITIVE);
+            Vec4::new(near.clamp(-1e3, 1.0), 0.0, painted.z, painted.w)
+        };
+        let root: Vec<Vec4> = away_m.into_iter().enumerate().map(root).collect();
+        CoatMesh { colour: None, root: Cow::from(root), ..fur.clone() }
+    };
+    DrawList { furs: scene.furs.iter().zip(away_m).map(mark).collect(), ..scene.clone() }
+}
+
+/// How far each coat vertex is from where the coat ends, along edges, m.
+fn away_from_borders(furs: &[CoatMesh<'_>]) -> Vec<Vec<f32>> {
+    // Places by their bits: what touches is drawn from the same numbers.
+    let mut places: HashMap<[u32; 3], usize> = HashMap::new();
+    let mut at = Vec::new();
+    let mut place = |p: Vec3| {
+        *places.entry(p.to_array().map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
+            at.push(p);
+            at.len() - 1
+        })
+    };
+    let of: Vec<Vec<usize>> = furs.iter().map(|fur| fur.positions_m.iter().map(|&p| place(p)).collect()).collect();
+    let mut edges: HashMap<[usize; 2], Vec<Vec3>> = HashMap::new();
+    for (fur, of) in furs.iter().zip(&of).filter(|(fur, _)| !fur.over_last) {
+        for triangle in fur.triangles {
+            let corners = triangle.map(|v| of[v as usize]);
+            let [p, q, r] = corners.map(|place| at[place]);
+            let normal = (q - p).cross(r - p).normalize_or_zero();
+            for k in 0..3 {
+                let [a, b] = [corners[k], corners[(k + 1) % 3]];
+                edges.entry([a.min(b), a.max(b)]).or_default().push(normal);
+            }
+        }
+    }
+    let mut around: Vec<Vec<usize>> = vec![Vec::new(); at.len()];
+    let mut away_m = vec![f32::INFINITY; at.len()];
+    let mut waiting = BinaryHeap::new();
+    for (&[a, b], normals) in &edges {
+        around[a].push(b);
+        around[b].push(a);
+        // The two sides of a sheet end in each other.
+        let goes_on = normals.iter().skip(1).any(|normal| normal.dot(normals[0]) > BACK);
+        if !goes_on {
+            for end in [a, b] {
+                away_m[end] = 0.0;
+                waiting.push((Reverse(0), end));
+            }
+        }
+    }
+    while let Some((Reverse(bits), place)) = waiting.pop() {
+        if bits > away_m[place].to_bits() {
+            continue;
+        }
+        for &next in &around[place] {
+            let next_m = away_m[place] + at[place].distance(at[next]);
+            if next_m < away_m[next] {
+                away_m[next] = next_m;
+                waiting.push((Reverse(next_m.to_bits()), next));
+            }
+        }
+    }
+    of.iter().map(|of| of.iter().map(|&place| away_m[place]).collect()).collect()
 }

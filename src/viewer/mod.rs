@@ -260,7 +260,9 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
         recorder.row("draw: camera and light", ms_since(start), 0);
         let mut picture = draw(&mut prepared, &view, show, &mut recorder)?;
         if options.show == Shown::Bald {
-            let hair = recorder.step("hair over skin", || prepared.hair_over_skin(&view), |_| 0)?;
+            let marked = bald::marked(&scene);
+            let over_skin = || renderer.prepare(&marked)?.hair_over_skin(&view);
+            let hair = recorder.step("hair over skin", over_skin, |_| 0)?;
             picture = bald::picture(&hair, &picture);
             let here = Baldness::of(&hair);
             (baldness.furred, baldness.bald) = (baldness.furred + here.furred, baldness.bald + here.bald);

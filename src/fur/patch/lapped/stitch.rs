@@ -10,7 +10,7 @@ use super::Surface;
 use super::patch::Limits;
 use crate::data::patches::Patches;
 use crate::fur::patch::face::{Face, singular_values};
-use crate::fur::patch::measure::{Edge, borders, edges};
+use crate::fur::patch::measure::{Edge, borders};
 use crate::math::{DVec2, IVec2, Vec2, Vec3};
 use rayon::prelude::*;
 use std::collections::VecDeque;
