@@ -11,6 +11,8 @@
 override NEAR_SIDE: bool = true;
 // Whether fins are drawn too and take their share.
 override WITH_FINS: bool = true;
+// Whether roots have textures.
+override PAINTED: bool = true;
 // What is drawn: 0 hair; 1 the mean optical depth of a slab, added up in red; 2 on the skin itself that of all slabs, as they
 // would lie over it on a plane, in green, and 1 in blue; nothing where root.x is above 0.
 override DEPTHS: u32 = 0u;
@@ -179,14 +181,21 @@ fn met(place: Place, slab: Filled) -> Met {
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let uv_dx = dpdx(in.uv);
     let uv_dy = dpdy(in.uv);
-    let root_dx = dpdx(in.root);
-    let root_dy = dpdy(in.root);
+    var root_dx = vec4(0.0);
+    var root_dy = vec4(0.0);
+    if PAINTED {
+        root_dx = dpdx(in.root);
+        root_dy = dpdy(in.root);
+    }
     // What is painted where the hair has its root: below, along the offset. Texels that were sampled on the skin hold it.
     var root = Root(1.0, 1.0);
-    if paint.has_painted > 0u && tile.tinted > 0.5 {
+    if PAINTED && paint.has_painted > 0u && tile.tinted > 0.5 {
         root = root_of(textureSampleGrad(painted_texture, painted_sampler, in.root.zw, 0, root_dx.zw, root_dy.zw), in.longest);
     }
-    let slab = filled_slab(in.layer, root.share);
+    var slab = Filled(i32(in.layer), tile.height_m / f32(tile.layers - 1u), 1.0);
+    if PAINTED {
+        slab = filled_slab(in.layer, root.share);
+    }
     if slab.slabs <= 0.0 && DEPTHS != 2u {
         discard;
     }
@@ -220,7 +229,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     var tint = vec3(1.0);
     if tile.tinted > 0.5 {
         tint = in.tint.rgb;
-        if paint.has_colour > 0u {
+        if PAINTED && paint.has_colour > 0u {
             tint *= textureSampleGrad(colour_texture, colour_sampler, in.root.xy, 0, root_dx.xy, root_dy.xy).rgb;
         }
     }

@@ -105,16 +105,19 @@ pub struct Pipelines {
     pub skin: wgpu::RenderPipeline,
     /// SkinMesh that only hides what is behind it.
     pub skin_depth: wgpu::RenderPipeline,
-    /// Far side of the shells: tests depth; index 1 hands over to fins.
-    pub far_shells: [wgpu::RenderPipeline; 2],
-    /// Near side of the shells: tests and writes depth; index 1 hands over to fins.
-    pub near_shells: [wgpu::RenderPipeline; 2],
+    /// Far side of the shells: tests depth.
+    pub far_shells: ShellPipelines,
+    /// Near side of the shells: tests and writes depth.
+    pub near_shells: ShellPipelines,
     /// Fins: test depth.
     pub fins: wgpu::RenderPipeline,
     shell: wgpu::ShaderModule,
     /// Samples to pixels.
     pub resolve: wgpu::RenderPipeline,
 }
+
+/// One side of the shells: with fins to hand over to, and with textures at the roots (index 1), or without.
+pub type ShellPipelines = [[wgpu::RenderPipeline; 2]; 2];
 
 /// What distinguishes one pass from another.
 struct Pass<'a> {
@@ -156,8 +159,9 @@ impl Pipelines {
             writes_depth: Some(true),
         };
         let shell_groups = [view, tile, Some(&layouts.geometry)];
-        let shells = |near: bool, with_fins: bool| {
-            let constants = [("NEAR_SIDE", f64::from(near)), ("WITH_FINS", f64::from(with_fins))];
+        let shells = |near: bool, with_fins: bool, painted: bool| {
+            let constants =
+                [("NEAR_SIDE", f64::from(near)), ("WITH_FINS", f64::from(with_fins)), ("PAINTED", f64::from(painted))];
             pipeline(
                 gpu,
                 &Pass {
@@ -191,8 +195,8 @@ impl Pipelines {
         Ok(Self {
             skin: pipeline(gpu, &skin_pass(&opaque)),
             skin_depth: pipeline(gpu, &skin_pass(&hidden)),
-            far_shells: [shells(false, false), shells(false, true)],
-            near_shells: [shells(true, false), shells(true, true)],
+            far_shells: [false, true].map(|fins| [false, true].map(|painted| shells(false, fins, painted))),
+            near_shells: [false, true].map(|fins| [false, true].map(|painted| shells(true, fins, painted))),
             fins: pipeline(gpu, &fins),
             shell,
             resolve: pipeline(gpu, &resolve),

@@ -169,7 +169,8 @@ impl<'a> Prepared<'a> {
     fn draw_shells(&self, pass: &mut wgpu::RenderPass<'_>, show: Show, near: bool, cost: &mut PassCost) {
         let furs = &self.furs;
         let pipelines = if near { &self.renderer.pipelines.near_shells } else { &self.renderer.pipelines.far_shells };
-        pass.set_pipeline(&pipelines[usize::from(show.fins)]);
+        let pipelines = &pipelines[usize::from(show.fins)];
+        let mut set = None;
         let most = self.renderer.tiles.iter().map(|tile| tile.layers).max().unwrap_or(0);
         let inner_to_outer: Vec<u32> = (1..most).collect();
         let order: Vec<u32> = if near { inner_to_outer } else { inner_to_outer.into_iter().rev().collect() };
@@ -181,6 +182,9 @@ impl<'a> Prepared<'a> {
             }
             for fur in turn.iter().filter(|fur| layer < self.renderer.tiles[fur.tile].layers && fur.shell_vertices > 0)
             {
+                if set.replace(fur.painted) != Some(fur.painted) {
+                    pass.set_pipeline(&pipelines[usize::from(fur.painted)]);
+                }
                 pass.set_bind_group(1, &self.renderer.tiles[fur.tile].group, &[]);
                 pass.set_bind_group(2, &fur.shells, &[]);
                 pass.draw(0..fur.shell_vertices, layer..layer + 1);

@@ -235,6 +235,8 @@ pub struct GpuFur {
     pub fin_vertices: u32,
     /// Tile it carries.
     pub tile: usize,
+    /// Whether its roots have textures.
+    pub painted: bool,
     /// Whether its shells take turns with those of the one before it.
     pub over_last: bool,
     /// Geometry memory.
@@ -278,6 +280,7 @@ impl GpuFur {
             shell_vertices: 3 * fur.triangles.len() as u32,
             fin_vertices: 6 * fins.len() as u32,
             tile: fur.tile,
+            painted: fur.colour.is_some() || fur.painted.is_some(),
             over_last: fur.over_last,
             bytes,
         })
