@@ -284,3 +284,72 @@ fn colours_of_a_passage_are_nearly_those_of_mixed_hair() {
     }
     assert!(worst[1] < 0.005 && worst[1] < 0.25 * worst[0], "{worst:?}");
 }
+
+/// The plane in two materials, of which the right one is a region of the other's preset.
+fn of_materials(folder: &Path, reach: &str) -> (asset::Asset, Coat) {
+    let mut document = asset::load("sample:plane").unwrap().document;
+    let whole = document.json["meshes"][0]["primitives"][0].clone();
+    let indices = document.integers(whole["indices"].as_u64().unwrap() as usize, 1).unwrap();
+    let accessor = whole["attributes"]["POSITION"].as_u64().unwrap() as usize;
+    let x: Vec<f32> = document.floats(accessor, 3).unwrap().chunks(3).map(|p| p[0]).collect();
+    let mut primitives = Vec::new();
+    for (side, name) in ["body", "mane"].into_iter().enumerate() {
+        let right = |t: &[u32]| t.iter().map(|&v| x[v as usize]).sum::<f32>() > 0.0;
+        let own: Vec<u32> = indices.chunks(3).filter(|t| usize::from(right(t)) == side).flatten().copied().collect();
+        let bytes: Vec<u8> = own.iter().copied().flat_map(u32::to_le_bytes).collect();
+        let view = document.push_view(&bytes, Some(34963));
+        let accessor =
+            serde_json::json!({"bufferView": view, "componentType": 5125, "count": own.len(), "type": "SCALAR"});
+        let mut primitive = whole.clone();
+        primitive["indices"] = document.push("accessors", accessor).into();
+        primitive["material"] = document.push("materials", serde_json::json!({"name": name})).into();
+        primitives.push(primitive);
+    }
+    document.json["meshes"][0]["primitives"] = serde_json::json!(primitives);
+    let input = folder.join("two.glb");
+    std::fs::write(&input, document.to_glb().unwrap()).unwrap();
+    std::fs::write(folder.join("mane.toml"), preset(300.0, 6.0, "")).unwrap();
+    let regions = format!("[[regions]]\npreset = \"mane.toml\"\nmaterial = \"mane\"\nreach = {{ mm = {reach} }}\n");
+    std::fs::write(folder.join("body.toml"), preset(80.0, 8.0, &regions)).unwrap();
+    let out = folder.join("out.glb");
+    let request = Request {
+        input: input.to_string_lossy().into_owned(),
+        out: out.clone(),
+        preset: Preset::load(&folder.join("body.toml").to_string_lossy()).unwrap(),
+        presets: vec![],
+        materials: vec![],
+        units: Units::Metres,
+        method: Method::Lapped,
+        seed: 1,
+        fallback: Fallback::None,
+        judge: false,
+    };
+    bake(&request, &mut |_| ()).unwrap();
+    asset::read_coat(&out).unwrap()
+}
+
+#[test]
+fn a_region_reaches_across_the_border_of_its_material() {
+    let folder = tempfile::tempdir().unwrap();
+    let passing = |reach: &str| {
+        let (asset, coat) = of_materials(folder.path(), reach);
+        // Share of the mane's tile along x: of what passes, and 0 or 1 of what does not.
+        let mut along: Vec<(f32, f32)> = Vec::new();
+        for primitive in &coat.primitives {
+            let part = asset.parts.iter().find(|part| part.primitive == primitive.primitive).unwrap();
+            for (v, &base) in primitive.base_vertex.iter().enumerate() {
+                let x = part.stored.positions[base as usize].x;
+                along.push((x, primitive.blend.as_ref().map_or(primitive.tile as f32, |blend| blend.weight[v])));
+            }
+        }
+        along
+    };
+    let within = |along: &[(f32, f32)], low: f32, high: f32| -> Vec<f32> {
+        along.iter().filter(|(x, _)| (low..high).contains(x)).map(|(_, share)| *share).collect()
+    };
+    let wide = passing("60");
+    assert!(within(&wide, 0.001, 1.0).iter().all(|&share| share == 1.0), "the mane is whole");
+    let near = within(&wide, -0.05, -0.005);
+    assert!(near.iter().any(|&share| share > 0.1 && share < 0.9), "{near:?}");
+    assert!(within(&wide, -1.0, -0.062).iter().all(|&share| share == 0.0), "beyond its reach there is none");
+}

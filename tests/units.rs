@@ -214,9 +214,12 @@ fn a_figures_unit_is_the_one_that_makes_it_plausible() {
 
 #[test]
 fn ground_that_would_be_furred_is_told_of() {
-    let asset = made(&[vec![ball("Fur", Vec3::Y, 1.0)], vec![square("Ground", 60.0)]], Rig::None);
+    let asset = made(&[vec![ball("Fur", Vec3::Y, 1.0)], vec![square("Moss", 60.0)]], Rig::None);
     let both = scaled(&asset, "fox", &[], Units::Auto);
-    assert!(matches!(&both.warnings[..], [told] if told.contains("\"Ground\" is flat and 24 times")), "{both:?}");
+    assert!(matches!(&both.warnings[..], [told] if told.contains("\"Moss\" is flat and 24 times")), "{both:?}");
+    // By its name it is bare, and not measured.
+    let named = made(&[vec![ball("Fur", Vec3::Y, 1.0)], vec![square("Ground", 60.0)]], Rig::None);
+    assert!(scaled(&named, "fox", &[], Units::Auto).warnings.is_empty());
     let rug = made(&[vec![ball("Fur", Vec3::Y, 1.0)], vec![square("Rug", 4.0)]], Rig::None);
     assert!(scaled(&rug, "fox", &[], Units::Auto).warnings.is_empty());
 }

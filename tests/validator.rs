@@ -50,7 +50,7 @@ fn the_schema_sees_planted_faults() {
     let root = format!("/extensions/{NAME}");
     let primitive = format!("/meshes/0/primitives/0/extensions/{NAME}");
     for (pointer, planted) in [
-        (format!("{root}/version"), json!(3)),
+        (format!("{root}/version"), json!(4)),
         (format!("{root}/tiles/0/edge"), json!(0)),
         (format!("{root}/tiles/0/shells/gains/0"), json!([1.0])),
         (format!("{primitive}/attributes/OFFSET"), json!(-1)),

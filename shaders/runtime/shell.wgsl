@@ -16,6 +16,9 @@ override PAINTED: bool = true;
 // What is drawn: 0 hair; 1 the mean optical depth of a slab, added up in red; 2 on the skin itself that of all slabs, as they
 // would lie over it on a plane, in green, and 1 in blue; nothing where root.x is above 0.
 override DEPTHS: u32 = 0u;
+// Cosines between a facet and the smooth normals at its corners: of a hard edge, and of a surface that facets stand for.
+const HARD: f32 = 0.707;
+const SOFT: f32 = 0.906;
 // Deeper is never seen through.
 const OPAQUE: f32 = 4.0;
 // Taps of the far side, which lies behind the near one and can do with fewer.
@@ -44,8 +47,8 @@ struct Varyings {
     @location(8) @interpolate(flat) y_turn: vec3<f32>,
     @location(9) @interpolate(flat) layer: u32,
     @location(10) axis: vec3<f32>,
-    // Square root of the triangle's area at this height over that on the skin.
-    @location(11) @interpolate(flat) spread: f32,
+    // Square root of the triangle's area at this height over that on the skin; how far fins stand for the hair around them.
+    @location(11) @interpolate(flat) spread: vec2<f32>,
     @location(12) root: vec4<f32>,
     @location(13) longest: f32,
     // Normal of the facet, outwards, and how far it gives way to the smooth one.
@@ -87,13 +90,19 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
     out.longest = own.longest;
     out.axis = own.axis;
     let foot = cross(b.position_m - a.position_m, c.position_m - a.position_m);
-    out.spread = clamp(sqrt(length(cross(edge_b, edge_c)) / max(length(foot), 1e-30)), 1.0 / MOST_SPREAD, MOST_SPREAD);
+    let spread = clamp(sqrt(length(cross(edge_b, edge_c)) / max(length(foot), 1e-30)), 1.0 / MOST_SPREAD, MOST_SPREAD);
 
     // Which side is seen follows from the offsets, not from the winding, so mirrored parts need no care.
     let face = cross(edge_b, edge_c);
     let outwards = face * sign(dot(face, a.offset_m + b.offset_m + c.offset_m));
     let around = length(edge_b) + length(edge_c) + length(edge_c - edge_b);
-    out.facet = vec4(normalize(outwards), closeness(length(own.offset_m), length(face) / max(around, 1e-20)));
+    let close = closeness(length(own.offset_m), length(face) / max(around, 1e-20));
+    out.spread = vec2(spread, close);
+    // The smooth normal is right where it is near the facet's at all corners, or where facets are small.
+    let plain = face / max(length(face), 1e-30);
+    let facet = select(-plain, plain, dot(plain, a.normal + b.normal + c.normal) >= 0.0);
+    let nearest = min(min(dot(facet, a.normal), dot(facet, b.normal)), dot(facet, c.normal));
+    out.facet = vec4(facet, max(close, smoothstep(HARD, SOFT, nearest)));
     var seen_from_outside = dot(outwards, ray_direction(at_a)) < 0.0;
     if DEPTHS == 2u {
         // Hair that leans behind its skin counts as missing.
@@ -141,7 +150,7 @@ fn place_of(in: Varyings, offset_m: vec3<f32>, uv_dx: vec2<f32>, uv_dy: vec2<f32
     let texture = frame(x_axis, y_axis, up);
     var at = texture;
     if tile.tinted > 0.5 {
-        at = hair_frame(in.axis, x_axis, normal, in.spread, up);
+        at = hair_frame(in.axis, x_axis, normal, in.spread.x, up);
     }
     let world_ray = ray_direction(in.position_m);
     let ray = ray_in_tile(at, world_ray);
@@ -216,7 +225,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 
     let found = met(place, slab);
     let medium = found.medium;
-    let kept = select(1.0, 1.0 - in.facet.w * fin_share(dot(place.normal, place.world_ray)), WITH_FINS);
+    let kept = select(1.0, 1.0 - in.spread.y * fin_share(dot(place.normal, place.world_ray)), WITH_FINS);
     let depth = found.depth * present * kept;
     if DEPTHS == 1u {
         return vec4(min(depth, OPAQUE), 0.0, 0.0, 0.0);

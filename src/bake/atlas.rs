@@ -1,6 +1,6 @@
 //! An atlas: hair grown on the parts themselves, charts of all of them in one square.
 
-use super::{CoatedParts, Laid, Steps, Task, recipe};
+use super::{CoatedParts, Laid, Steps, Task, finest, recipe};
 use crate::coat::atlas::{self, judge};
 use crate::coat::measures::Measures;
 use crate::error::{Error, Result};
@@ -62,5 +62,8 @@ pub(super) fn coat_parts(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps
         task.preset.name,
         square.edge_m / texels as f32 * 1e3
     );
-    Ok(CoatedParts { tiles: vec![tile], primitives: carried, laid: vec![laid], accuracy, notes: vec![note], warnings })
+    let texel_m = square.edge_m / texels as f32;
+    let mut notes = finest::notes(&groomed, &laid.material, &carried, task.request.method, Some(texel_m));
+    notes.push(note);
+    Ok(CoatedParts { tiles: vec![tile], primitives: carried, laid: vec![laid], accuracy, notes, warnings })
 }

@@ -75,6 +75,7 @@ pub fn cut(
             inside: (0..count as u32).map(|v| ([v; 3], [1.0, 0.0, 0.0])).collect(),
             tint: (0..count).map(tint).collect(),
             triangles: carried.triangles.clone(),
+            coarse: false,
         });
     };
     let tint = |v: usize| -> Vec4 {
@@ -86,6 +87,7 @@ pub fn cut(
         inside: refined.origin.iter().map(|at| (mesh.triangles[at.triangle as usize], at.b.to_array())).collect(),
         tint: (0..refined.origin.len()).map(tint).collect(),
         triangles: refined.mesh.triangles,
+        coarse: refined.coarse,
     })
 }
 

@@ -4,6 +4,7 @@ mod atlas;
 mod comb;
 mod cut;
 mod extent;
+mod finest;
 pub mod picture;
 mod regions;
 mod skin;
@@ -289,7 +290,7 @@ fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: 
         tiles.push(tile);
         accuracy.extend(rows);
     }
-    let (mut carried, mut warnings, mut laid) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut carried, mut warnings, mut laid, mut notes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let all = steps.run("groom", || task.groom(task.preset))?;
     // An asset's own coordinates are every part's by itself.
     let alone = matches!(request.method, Method::Uv(_));
@@ -307,11 +308,13 @@ fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: 
                 before_after(groomed.mesh(), &groomed.offsets(), &axes, &patches, &tiles[0], WINDOWS).into()
             })
         });
-        carried.extend(if others.is_empty() {
+        let worn = if others.is_empty() {
             steps.run("coat primitives", || task.coat_primitives(&groomed, &patches, &tiles[0]))
         } else {
             regions::wear_all(task, parts, &groomed, &patches, (&others, &tiles), steps)?
-        });
+        };
+        notes.extend(finest::notes(&groomed, &task.materials(parts), &worn, request.method, None));
+        carried.extend(worn);
         laid.push(Laid {
             material: task.materials(parts),
             singularities: groomed.singularities,
@@ -319,7 +322,7 @@ fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: 
             ms,
         });
     }
-    Ok(CoatedParts { tiles, primitives: carried, laid, accuracy, notes: Vec::new(), warnings })
+    Ok(CoatedParts { tiles, primitives: carried, laid, accuracy, notes, warnings })
 }
 
 fn preset_of<'a>(request: &'a Request, part: &Part) -> &'a Preset {

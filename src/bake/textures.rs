@@ -14,7 +14,7 @@ use serde_json::json;
 use std::path::Path;
 
 /// Most texels along a side of what is painted.
-const MOST_PAINTED: u32 = 1024;
+pub const MOST_PAINTED: u32 = 1024;
 /// A length that is painted nowhere around a vertex still divides.
 const LEAST_LONGEST: f32 = 1e-3;
 

@@ -139,6 +139,8 @@ pub struct Cut {
     pub tint: Vec<Vec4>,
     /// Vertex indices.
     pub triangles: Vec<[u32; 3]>,
+    /// Whether there is more to see than could be cut out.
+    pub coarse: bool,
 }
 
 /// A passage from a coat primitive's tile into another with equally many layers: both are there on the same shells, and with weight w

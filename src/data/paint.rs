@@ -143,6 +143,18 @@ impl Paint {
         along_u.normalize_or_zero() * right - along_v.normalize_or_zero() * up
     }
 
+    /// About how far the finest texels on a triangle are apart, m.
+    pub fn texel_m(&self, mesh: &Mesh, t: usize) -> f32 {
+        let corners = mesh.triangles[t].map(|v| v as usize);
+        let texels = |set: usize, [width, height]: [u32; 2]| {
+            let Some(uv) = mesh.uv_sets.get(set) else { return 0.0 };
+            let [p, q, r] = corners.map(|v| uv[v] * Vec2::new(width as f32, height as f32));
+            0.5 * (q - p).perp_dot(r - p).abs()
+        };
+        let most = self.of(mesh, t).pictures().map(|(set, size)| texels(set, size)).fold(0.0, f32::max);
+        (mesh.rest_area_m2(t) / most.max(f32::MIN_POSITIVE)).sqrt()
+    }
+
     /// Finds what [`Self::longest`] says. Vertices at one place share it.
     pub fn find_longest(&mut self, mesh: &Mesh) {
         let mut longest = vec![0.0_f32; mesh.positions_m.len()];

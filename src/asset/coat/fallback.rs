@@ -117,6 +117,7 @@ fn stack(
         inside: (0..coat_primitive.base_vertex.len() as u32).map(|v| ([v; 3], [1.0, 0.0, 0.0])).collect(),
         tint: coat_primitive.tint.clone(),
         triangles: coat_primitive.triangles.clone(),
+        coarse: false,
     };
     let cut = coat_primitive.cut.clone().unwrap_or_else(whole);
     let (n, shells) = (cut.inside.len(), materials.len());

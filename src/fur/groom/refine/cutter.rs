@@ -24,18 +24,6 @@ pub(super) struct Painting<'a> {
 }
 
 impl Painting<'_> {
-    /// About how far the finest texels on a triangle are apart, m.
-    fn texel_m(&self, t: usize) -> f32 {
-        let corners = self.mesh.triangles[t].map(|v| v as usize);
-        let texels = |set: usize, [width, height]: [u32; 2]| {
-            let Some(uv) = self.mesh.uv_sets.get(set) else { return 0.0 };
-            let [p, q, r] = corners.map(|v| uv[v] * Vec2::new(width as f32, height as f32));
-            0.5 * (q - p).perp_dot(r - p).abs()
-        };
-        let most = self.paint.of(self.mesh, t).pictures().map(|(set, size)| texels(set, size)).fold(0.0, f32::max);
-        (self.mesh.rest_area_m2(t) / most.max(f32::MIN_POSITIVE)).sqrt()
-    }
-
     /// What is painted at a point, its length as hair has it.
     fn at(&self, origin: Origin) -> PaintedPoint {
         let t = origin.triangle as usize;
@@ -100,7 +88,7 @@ impl<'a> Cutter<'a> {
         Self {
             skin,
             finest,
-            texel_m: (0..mesh.triangles.len()).map(|t| skin.texel_m(t)).collect(),
+            texel_m: (0..mesh.triangles.len()).map(|t| skin.paint.texel_m(mesh, t)).collect(),
             cuts: mesh.triangles.iter().enumerate().map(cut).collect(),
             fresh: (0..mesh.triangles.len() as u32).collect(),
             painted: origin.par_iter().map(|&origin| skin.at(origin)).collect(),
