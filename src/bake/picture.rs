@@ -21,8 +21,9 @@ use crate::preset::Preset;
 use crate::reference;
 use crate::volume::scene::{HairScattering, Lighting, Scene};
 
-/// The finest that what is painted is told apart in undercoat and skin, in parts of what is furred.
-const FINEST: f32 = 500.0;
+/// The finest that what is painted is told apart in undercoat, in parts of what is furred: hair carries a colour further than that
+/// from its root.
+const FINEST: f32 = 250.0;
 /// Most triangles that the skin is cut into for it.
 const MOST_TRIANGLES: usize = 400_000;
 

@@ -8,12 +8,14 @@ use crate::math::{Vec2, Vec3};
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 
+/// Bare skin, which nothing blurs, is cut to edges shorter by this.
+const OF_BARE: f32 = 0.25;
 /// How far what is painted may be off what lies between the vertices: as a share of full density, length or brightness.
-const CLOSE: f32 = 0.04;
+const CLOSE: f32 = 0.06;
 /// Points along an edge at which the two are compared, at most.
 const MOST_POINTS: u32 = 12;
 /// Edges are not cut to less than this share of a texel: between texels nothing is told apart.
-const OF_TEXEL: f32 = 0.5;
+const OF_TEXEL: f32 = 1.0;
 
 /// A skin with what is painted on it.
 #[derive(Clone, Copy)]
@@ -84,7 +86,12 @@ impl<'a> Cutter<'a> {
                 origin[v as usize] = Origin { triangle: t as u32, b };
             }
         }
-        let cut = |(t, &corners): (usize, &[u32; 3])| Cut { corners, parent: t as u32, pieces: Vec::new() };
+        let cut = |(t, &corners): (usize, &[u32; 3])| Cut {
+            corners,
+            within: Vec3::AXES,
+            parent: t as u32,
+            pieces: Vec::new(),
+        };
         Self {
             skin,
             finest,
@@ -115,26 +122,6 @@ impl<'a> Cutter<'a> {
         })
     }
 
-    /// Where in its skin triangle a corner of a piece lies.
-    fn corner(&self, cut: &Cut, k: usize) -> Vec3 {
-        let v = cut.corners[k];
-        let Origin { triangle, b } = self.origin[v as usize];
-        if triangle == cut.parent {
-            return b;
-        }
-        // It was made for a neighbour: the same point of the edge between them.
-        let mesh = self.skin.mesh;
-        let corners = mesh.triangles[cut.parent as usize];
-        let mut own = Vec3::ZERO;
-        for (j, &w) in mesh.triangles[triangle as usize].iter().enumerate() {
-            let place = mesh.position_class[w as usize];
-            if let Some(i) = corners.iter().position(|&c| c == w || mesh.position_class[c as usize] == place) {
-                own[i] += b[j];
-            }
-        }
-        own
-    }
-
     /// Whether what is painted shows between a triangle's vertices.
     fn shows(&self, cut: &Cut) -> bool {
         let painted = self.skin.paint.of(self.skin.mesh, cut.parent as usize);
@@ -143,11 +130,12 @@ impl<'a> Cutter<'a> {
         }
         let places = cut.corners.map(|v| self.rest_m(v));
         let longest_m = (0..3).map(|k| places[k].distance(places[(k + 1) % 3])).fold(0.0, f32::max);
-        let least_m = self.finest.edge_m.max(OF_TEXEL * self.texel_m[cut.parent as usize]);
+        let edge_m = if painted.bare { OF_BARE * self.finest.edge_m } else { self.finest.edge_m };
+        let least_m = edge_m.max(OF_TEXEL * self.texel_m[cut.parent as usize]);
         if longest_m < 2.0 * least_m {
             return false;
         }
-        let b = [0, 1, 2].map(|k| self.corner(cut, k));
+        let b = cut.within;
         let values = cut.corners.map(|v| &self.painted[v as usize]);
         let points = ((longest_m / least_m).ceil() as u32).clamp(2, MOST_POINTS);
         (0..=points).any(|i| {
@@ -185,11 +173,14 @@ impl<'a> Cutter<'a> {
 
     fn cut(&mut self, t: usize, marked: [bool; 3]) {
         let whole = self.cuts[t].clone();
-        let corner = |k: usize| whole.corners[k % 3];
-        let middle = |k: usize, this: &mut Self| this.middle(&whole, k % 3);
+        let corner = |k: usize| (whole.corners[k % 3], whole.within[k % 3]);
+        let middle = |k: usize, this: &mut Self| {
+            let within = 0.5 * (whole.within[k % 3] + whole.within[(k + 1) % 3]);
+            (this.middle(&whole, k % 3), within)
+        };
         // Turned so that the case is one of three.
         let count = marked.iter().filter(|m| **m).count();
-        let pieces: Vec<[u32; 3]> = match count {
+        let pieces = match count {
             3 => {
                 let [p, q, r] = [0, 1, 2].map(|k| middle(k, self));
                 vec![[corner(0), p, r], [p, corner(1), q], [r, q, corner(2)], [p, q, r]]
@@ -207,11 +198,12 @@ impl<'a> Cutter<'a> {
             }
         };
         self.whole += pieces.len() - 1;
-        for corners in pieces {
+        for piece in pieces {
             let number = self.cuts.len() as u32;
             self.cuts[t].pieces.push(number);
             self.fresh.push(number);
-            self.cuts.push(Cut { corners, parent: whole.parent, pieces: Vec::new() });
+            let (corners, within) = (piece.map(|(v, _)| v), piece.map(|(_, b)| b));
+            self.cuts.push(Cut { corners, within, parent: whole.parent, pieces: Vec::new() });
         }
     }
 
@@ -222,7 +214,7 @@ impl<'a> Cutter<'a> {
         if let Some(&known) = self.middles.get(&key) {
             return known;
         }
-        let b = 0.5 * (self.corner(cut, k) + self.corner(cut, (k + 1) % 3));
+        let b = 0.5 * (cut.within[k] + cut.within[(k + 1) % 3]);
         let number = self.origin.len() as u32;
         let origin = Origin { triangle: cut.parent, b };
         self.origin.push(origin);
@@ -282,7 +274,6 @@ impl<'a> Cutter<'a> {
             origin: self.origin,
             coarse: self.coarse,
             cuts: self.cuts,
-            middles: self.middles,
         }
     }
 }

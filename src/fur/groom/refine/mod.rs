@@ -8,7 +8,6 @@ use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::math::Vec3;
 use cutter::{Cutter, Painting};
-use std::collections::HashMap;
 
 /// How far a skin is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,14 +42,15 @@ pub struct Refined {
     pub coarse: bool,
     /// Triangles as they were cut: the first are the skin's, pieces follow in the order of cutting.
     cuts: Vec<Cut>,
-    /// Vertices in the middle of edges, by their ends.
-    middles: HashMap<[u32; 2], u32>,
 }
 
 /// A triangle, whole or cut.
 #[derive(Clone, Debug)]
 struct Cut {
     corners: [u32; 3],
+    /// Where these lie in the skin's triangle, in its barycentric coordinates.
+    within: [Vec3; 3],
+    /// The skin's triangle.
     parent: u32,
     /// Its pieces, or none.
     pieces: Vec<u32>,

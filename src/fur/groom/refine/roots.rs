@@ -1,6 +1,6 @@
 //! Roots of hair that grew before the skin was cut.
 
-use super::{Cut, Refined};
+use super::Refined;
 use crate::data::strands::Root;
 use crate::math::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -17,47 +17,22 @@ impl Refined {
             .for_each(|((t, _), n)| number[t] = n);
         roots.par_iter_mut().for_each(|root| {
             let [x, y] = root.barycentric;
-            let (mut at, mut b) = (root.triangle as usize, Vec3::new(x, y, 1.0 - x - y));
-            while let Some((piece, inner)) = self.piece_at(at, b) {
-                (at, b) = (piece, inner);
+            let point = Vec3::new(x, y, 1.0 - x - y);
+            let mut at = root.triangle as usize;
+            while let Some(piece) = self.piece_at(at, point) {
+                at = piece;
             }
-            *root = Root { triangle: number[at], barycentric: [b.x, b.y] };
+            let inside = barycentric(self.cuts[at].within, point).max(Vec3::ZERO);
+            let inside = inside / inside.element_sum().max(f32::MIN_POSITIVE);
+            *root = Root { triangle: number[at], barycentric: [inside.x, inside.y] };
         });
     }
 
-    /// The piece of a triangle that a point of it lies on, and where; `None` where it is whole.
-    fn piece_at(&self, t: usize, b: Vec3) -> Option<(usize, Vec3)> {
-        let whole = &self.cuts[t];
-        let inside = |piece: &u32| {
-            let corners = self.cuts[*piece as usize].corners;
-            // Corners of pieces are corners of the whole, or lie in the middle of its edges.
-            let of = corners.map(|v| self.within(whole, v));
-            (*piece as usize, barycentric(of, b))
-        };
-        let least = |(_, b): &(usize, Vec3)| b.min_element();
-        let found = whole.pieces.iter().map(inside).max_by(|a, b| least(a).total_cmp(&least(b)))?;
-        let clamped = found.1.max(Vec3::ZERO);
-        Some((found.0, clamped / clamped.element_sum().max(f32::MIN_POSITIVE)))
-    }
-
-    /// A vertex of a triangle's pieces in its barycentric coordinates.
-    fn within(&self, whole: &Cut, v: u32) -> Vec3 {
-        let mut b = Vec3::ZERO;
-        if let Some(k) = whole.corners.iter().position(|&corner| corner == v) {
-            b[k] = 1.0;
-            return b;
-        }
-        for k in 0..3 {
-            let [p, q] = [whole.corners[k], whole.corners[(k + 1) % 3]];
-            if self.middle_of(p, q) == Some(v) {
-                (b[k], b[(k + 1) % 3]) = (0.5, 0.5);
-            }
-        }
-        b
-    }
-
-    fn middle_of(&self, p: u32, q: u32) -> Option<u32> {
-        self.middles.get(&[p.min(q), p.max(q)]).copied()
+    /// The piece of a triangle that a point of the skin's triangle lies on; `None` where it is whole.
+    fn piece_at(&self, t: usize, point: Vec3) -> Option<usize> {
+        let least = |piece: &u32| barycentric(self.cuts[*piece as usize].within, point).min_element();
+        let pieces = self.cuts[t].pieces.iter();
+        pieces.max_by(|a, b| least(a).total_cmp(&least(b))).map(|&piece| piece as usize)
     }
 }
 
