@@ -66,5 +66,6 @@ mod units;
 mod upright;
 mod validator;
 mod viewer;
+mod wild_skins;
 mod witness;
 mod xatlas;

@@ -8,6 +8,7 @@ use crate::asset::{self, Asset, Part};
 use crate::data::coat::{Blend, Coat, CoatPrimitive, FinEdge};
 use crate::error::{Error, Result};
 use crate::math::{Vec2, Vec3, Vec4};
+use std::collections::HashMap;
 use std::path::Path;
 
 /// Reads a file that has a coat.
@@ -48,6 +49,8 @@ pub fn coat_of(asset: &Asset) -> Result<Coat> {
     for tile in extension.list("tiles")? {
         coat.tiles.push(textures::read(document, &tile)?);
     }
+    // Coat vertices that several coats share, by their accessors.
+    let mut pools: Vec<String> = Vec::new();
     for (mesh, mesh_at) in root.list("meshes")?.iter().enumerate() {
         for (primitive, at) in mesh_at.list("primitives")?.iter().enumerate() {
             let Some(carried) = at.get("extensions").and_then(|e| e.get(NAME)) else { continue };
@@ -59,20 +62,19 @@ pub fn coat_of(asset: &Asset) -> Result<Coat> {
                 let mut coat_primitive = empty.clone();
                 read_primitive(asset, carried, &mut coat_primitive, part)?;
                 check(&coat_primitive, part, &coat.tiles)?;
-                coat.primitives.push(own_vertices(coat_primitive));
+                pools.push(carried.need("attributes")?.value.to_string());
+                coat.primitives.push(coat_primitive);
             }
         }
     }
+    let mut users: HashMap<&str, usize> = HashMap::new();
+    pools.iter().for_each(|pool| *users.entry(pool).or_default() += 1);
+    for (coat_primitive, pool) in coat.primitives.iter_mut().zip(&pools) {
+        if users[pool.as_str()] > 1 {
+            *coat_primitive = coat_primitive.part(|_| true);
+        }
+    }
     Ok(coat)
-}
-
-/// A coat primitive without the vertices of a pool that others use.
-fn own_vertices(coat_primitive: CoatPrimitive) -> CoatPrimitive {
-    let mut used = vec![false; coat_primitive.base_vertex.len()];
-    coat_primitive.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
-    let based = |v: &u32| *v != u32::MAX;
-    let whole = used.iter().zip(&coat_primitive.base_vertex).all(|(used, base)| *used || based(base));
-    if whole { coat_primitive } else { coat_primitive.part(|_| true) }
 }
 
 fn read_primitive(asset: &Asset, at: &At<'_>, coat_primitive: &mut CoatPrimitive, part: &Part) -> Result<()> {
