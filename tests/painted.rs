@@ -21,7 +21,7 @@ const HALF: f32 = 0.1;
 const PIXELS: u32 = 128;
 
 /// A square of two triangles whose base colour is a picture.
-fn square(folder: &Path, name: &str, pixel: impl Fn(u32, u32) -> [u8; 3], size: u32) -> PathBuf {
+pub fn square(folder: &Path, name: &str, pixel: impl Fn(u32, u32) -> [u8; 3], size: u32) -> PathBuf {
     let mut document = furrier::asset::Document::made("square");
     let mut add = |bytes: Vec<u8>, kind: &str, component: u32, count: usize, more: serde_json::Value| {
         let view = document.push_view(&bytes, None);
@@ -210,6 +210,45 @@ fn half_the_density_is_half_the_optical_depth() {
     };
     let ratio = between(0.1, 0.4) / between(0.6, 0.9);
     assert!((ratio - 128.0 / 255.0).abs() < 0.025, "{ratio}");
+}
+
+#[test]
+fn hair_painted_inside_a_face_whose_corners_are_bare_is_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = square(folder.path(), "square.glb", |_, _| [255; 3], 4);
+    let inside =
+        map(
+            folder.path(),
+            "inside.png",
+            64,
+            |x, y| if (16..48).contains(&x) && (16..48).contains(&y) { 255 } else { 0 },
+        );
+    for key in ["density", "length"] {
+        let setting = format!("maps.{key}={inside:?}");
+        let preset = upright(&["undercoat.density_per_cm2=20000", &setting]);
+        let out = folder.path().join("out.glb");
+        let (asset, coat) = baked(&input, &out, &preset, Method::Lapped);
+        let picture = depths(&asset, &coat);
+        let [inner, outer] = [0.5, 0.1].map(|u| at(&picture, Vec2::new(u, 0.5))[0]);
+        assert!(inner > 0.5 && outer < 1e-3, "{key}: {inner} inside, {outer} outside");
+        // Every vertex of the fallback is of the square's corners or lies within it, and counts where hair is.
+        let document = &asset.document;
+        let fallback = &document.json["meshes"][1]["primitives"][0]["attributes"];
+        let read = |name: &str, width| document.floats(fallback[name].as_u64().unwrap() as usize, width).unwrap();
+        for (colour, place) in read("COLOR_0", 4).chunks(4).zip(read("POSITION", 3).chunks(3)) {
+            let off = (uv_of(Vec3::from_slice(place)) - 0.5).abs().max_element();
+            assert!(place[1] > 0.0, "{key}: {place:?}");
+            if !(0.2..0.3).contains(&off) {
+                let expected = if off < 0.25 { 1.0 } else { 0.0 };
+                assert!((colour[3] - expected).abs() < 0.05, "{key}: {} at {place:?}", colour[3]);
+            }
+        }
+    }
+    // A face without any hair has no shells.
+    let none = map(folder.path(), "none.png", 8, |_, _| 0);
+    let preset = upright(&[&format!("maps.density={none:?}")]);
+    let (_, coat) = baked(&input, &folder.path().join("out.glb"), &preset, Method::Lapped);
+    assert!(coat.primitives.is_empty());
 }
 
 #[test]

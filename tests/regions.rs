@@ -353,3 +353,37 @@ fn a_region_reaches_across_the_border_of_its_material() {
     assert!(near.iter().any(|&share| share > 0.1 && share < 0.9), "{near:?}");
     assert!(within(&wide, -1.0, -0.062).iter().all(|&share| share == 0.0), "beyond its reach there is none");
 }
+
+#[test]
+fn fallback_shells_of_a_passage_keep_the_colours_of_a_texture() {
+    let folder = tempfile::tempdir().unwrap();
+    let ramp = image::GrayImage::from_fn(16, 4, |x, _| image::Luma([(x * 17) as u8]));
+    ramp.save(folder.path().join("ramp.png")).unwrap();
+    let with = |rest: &str| preset(100.0, 6.0, rest).replace("from = \"preset\"", "from = \"asset\"");
+    std::fs::write(folder.path().join("other.toml"), with("")).unwrap();
+    let regions = "[[regions]]\npreset = \"other.toml\"\nmap = \"ramp.png\"\n";
+    std::fs::write(folder.path().join("own.toml"), with(regions)).unwrap();
+    let input = crate::painted::square(folder.path(), "square.glb", |_, _| [30, 200, 30], 4);
+    let out = folder.path().join("out.glb");
+    let request = Request {
+        input: input.to_string_lossy().into_owned(),
+        out: out.clone(),
+        preset: Preset::load(&folder.path().join("own.toml").to_string_lossy()).unwrap(),
+        presets: vec![],
+        materials: vec![],
+        units: Units::Metres,
+        method: Method::Lapped,
+        seed: 1,
+        fallback: Fallback::Shells(2),
+        judge: false,
+    };
+    bake(&request, &mut |_| ()).unwrap();
+    let (asset, coat) = asset::read_coat(&out).unwrap();
+    assert!(coat.primitives.iter().any(|primitive| primitive.blend.is_some()));
+    assert!(coat.primitives.iter().all(|primitive| primitive.colour.is_some()));
+    let document = &asset.document;
+    for primitive in document.json["meshes"][1]["primitives"].as_array().unwrap() {
+        let colours = document.floats(primitive["attributes"]["COLOR_0"].as_u64().unwrap() as usize, 4).unwrap();
+        assert!(colours.chunks(4).all(|c| c[1] > 0.4 && c[0] < 0.05), "{:?}", &colours[..4]);
+    }
+}

@@ -138,18 +138,21 @@ fn painted_lengths_are_those_of_hair() {
         lengths
     };
     let whole = strands_of(&full).iter().map(|(_, length)| *length).fold(0.0, f32::max);
-    let mut seen = 0;
+    // Hair in creases is shorter; none is longer than painted.
+    let (mut seen, mut sum) = (0, 0.0);
     for (uv, length) in strands_of(&preset) {
         let at = |u: f32| ((u.rem_euclid(1.0) * 384.0) as u32).min(383);
         let around = [-2.0, 0.0, 2.0].map(|d: f32| picture.get_pixel(at(uv.x + d / 384.0), at(uv.y + d / 384.0)).0[0]);
         // Away from borders of what is painted.
         if around[0] == around[1] && around[1] == around[2] {
             let expected = whole * f32::from(around[1]) / 255.0;
-            assert!((length - expected).abs() < 0.03 * whole, "{length} m at {uv}, {expected} painted");
-            seen += 1;
+            assert!(length < expected + 0.03 * whole, "{length} m at {uv}, {expected} painted");
+            assert!(expected > 0.0, "hair at {uv}, where none is painted");
+            (seen, sum) = (seen + 1, sum + length / expected);
         }
     }
-    assert!(seen > 500, "{seen}");
+    let mean = sum / seen as f32;
+    assert!(seen > 500 && mean > 0.9, "{mean} of what is painted, over {seen} hairs");
 }
 
 /// Coverage of `view` and `render` from a side.

@@ -15,7 +15,7 @@ use crate::math::{DVec3, Vec3};
 /// Share of gravity in a tailward comb.
 const SAG: f32 = 0.3;
 
-/// The comb of `mesh`, a part of `asset`; zero where hair stands upright. What should be said of whorls, strokes and
+/// The comb of `mesh`, all parts of `asset`; zero where hair stands upright. What should be said of whorls, strokes and
 /// partings that miss the asset is added to `notes`.
 ///
 /// # Errors

@@ -78,15 +78,30 @@ pub fn cut(
             coarse: false,
         });
     };
-    let tint = |v: usize| -> Vec4 {
+    // Vertices that no furred triangle uses stay behind.
+    let mut new = vec![u32::MAX; refined.origin.len()];
+    let mut used = Vec::new();
+    let mut renumbered = |v: u32| {
+        if new[v as usize] == u32::MAX {
+            new[v as usize] = used.len() as u32;
+            used.push(v as usize);
+        }
+        new[v as usize]
+    };
+    let triangles = refined.mesh.triangles.iter().map(|t| t.map(&mut renumbered)).collect();
+    let tint = |&v: &usize| -> Vec4 {
         let at = refined.origin[v];
         let here = density(mesh.triangles[at.triangle as usize], at.b);
         refined.fields.tint[v].extend(here * refined.fields.density[v] * refined.fields.length[v])
     };
     Some(Cut {
-        inside: refined.origin.iter().map(|at| (mesh.triangles[at.triangle as usize], at.b.to_array())).collect(),
-        tint: (0..refined.origin.len()).map(tint).collect(),
-        triangles: refined.mesh.triangles,
+        inside: used
+            .iter()
+            .map(|&v| &refined.origin[v])
+            .map(|at| (mesh.triangles[at.triangle as usize], at.b.to_array()))
+            .collect(),
+        tint: used.iter().map(tint).collect(),
+        triangles,
         coarse: refined.coarse,
     })
 }

@@ -5,6 +5,7 @@ use super::skin::Groomed;
 use super::textures::MOST_PAINTED;
 use crate::data::coat::CoatPrimitive;
 use crate::data::maps::Maps;
+use std::collections::BTreeSet;
 
 /// From this many times as fine on as an atlas, a texture loses what people see.
 const FINER: f32 = 2.0;
@@ -19,7 +20,8 @@ pub fn notes(
 ) -> Vec<String> {
     let Some(paint) = &groomed.fields.paint else { return Vec::new() };
     let mut notes = Vec::new();
-    let maps = || paint.parts.iter().filter_map(|part| part.maps.as_deref());
+    let parts: BTreeSet<u32> = groomed.skin.part_of.iter().copied().collect();
+    let maps = || parts.iter().filter_map(|&part| paint.parts[part as usize].maps.as_deref());
     let has = |of: fn(&Maps) -> bool| maps().any(of);
     if has(|maps| maps.comb.is_some()) {
         notes.push(format!(

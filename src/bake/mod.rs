@@ -30,7 +30,7 @@ use crate::fur::patch::{Parameterisation, parameterise};
 use crate::math::Vec3;
 use crate::metrics::timing;
 use crate::preset::Preset;
-use skin::Groomed;
+use skin::{Groomed, Role};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use textures::Textures;
@@ -173,7 +173,8 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
     let mut carried: Vec<(usize, CoatPrimitive)> = Vec::new();
     for (preset, parts) in &tiles {
         let has_uv = parts.iter().any(|&part| !asset.parts[part].stored.uv_sets.is_empty());
-        let textures = Textures::new(&mut asset.document, preset, has_uv)?;
+        // Regions mix lengths and densities at vertices, and colours of presets of their own.
+        let textures = Textures::new(&mut asset.document, preset, has_uv && preset.regions.is_empty())?;
         let task = Task { asset: &asset, skin: &skin, preset, parts, request, scale: &scale, textures: &textures };
         let coated = match request.method {
             Method::Atlas { texels } => atlas::coat_parts(&task, texels, &mut steps)?,
@@ -248,7 +249,8 @@ impl Task<'_> {
 
     /// The skin with this preset's fields, all of it: what has no hair is part of the surface.
     fn groom(&self, preset: &Preset) -> Result<Groomed> {
-        skin::groom(self.asset, self.skin, |_| false, preset, self.scale)
+        let role = |part: usize| if self.parts.contains(&part) { Role::Furred } else { Role::Aside };
+        skin::groom(self.asset, self.skin, role, preset, self.scale)
     }
 
     /// What some of the task's parts are called.
@@ -292,8 +294,8 @@ fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: 
     }
     let (mut carried, mut warnings, mut laid, mut notes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let all = steps.run("groom", || task.groom(task.preset))?;
-    // An asset's own coordinates are every part's by itself.
-    let alone = matches!(request.method, Method::Uv(_));
+    // An asset's own coordinates are every part's by itself; passages between presets need all parts.
+    let alone = matches!(request.method, Method::Uv(_)) && others.is_empty();
     let sets: Vec<&[usize]> = if alone { task.parts.chunks(1).collect() } else { vec![task.parts] };
     for parts in sets {
         let groomed = steps.run("groom", || all.cut(|part| parts.contains(&(part as usize))));

@@ -1,6 +1,6 @@
 //! A picture of an asset's fur by the hybrid renderer, without baking it.
 
-use super::skin::{self, Groomed};
+use super::skin::{self, Groomed, Role};
 use super::units::{self, Units};
 use super::weld;
 use crate::asset::strands::Export;
@@ -98,7 +98,8 @@ impl Grown {
         let tile = TileHair::grow(&fibre, &undercoat, preset.shells.tile_mm * 1e-3, request.seed);
         let furred = |part: usize| chosen.contains(&part);
         let skin = weld::join(&asset, furred, scale.metres_per_unit, fibre.length_m)?;
-        let whole = skin::groom(&asset, &skin, |part| !furred(part), preset, &scale)?;
+        let role = |part: usize| if furred(part) { Role::Furred } else { Role::Bare };
+        let whole = skin::groom(&asset, &skin, role, preset, &scale)?;
         let hair_m = reaches_m(&asset, &whole, tile.height_m);
         let groomed = shown(&asset, whole, pose.as_ref(), scale.metres_per_unit)?;
         notes.extend(groomed.notes.iter().cloned());

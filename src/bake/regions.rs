@@ -104,7 +104,9 @@ fn shares(task: &Task<'_>, own: &Groomed) -> Result<Vec<Vec<f32>>> {
             (Some(material), ..) => beside(task, own, material, region.reach, i)?,
             (_, Some(map), Some(uv), _) => {
                 let image = image::load(map)?;
-                uv.iter().map(|&uv| sample(&image, uv).x).collect()
+                // Parts without coordinates have nothing of it.
+                let told = |v: usize| !task.asset.parts[own.skin.stored[v].0 as usize].stored.uv_sets.is_empty();
+                uv.iter().enumerate().map(|(v, &uv)| if told(v) { sample(&image, uv).x } else { 0.0 }).collect()
             }
             (_, Some(_), None, _) => return fault("a region's map needs texture coordinates", "a mesh with a UV set"),
             (_, None, _, Some(attribute)) => attribute.clone(),
@@ -192,6 +194,7 @@ fn common(fields: &[Fields]) -> Option<Arc<Paint>> {
     }
     let mut paint = Paint::clone(first);
     paint.parts.iter_mut().for_each(|part| part.maps = None);
+    paint.longest.fill(1.0);
     Some(Arc::new(paint))
 }
 

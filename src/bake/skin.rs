@@ -35,21 +35,33 @@ pub struct Groomed {
     pub notes: Vec<String>,
 }
 
-/// Gathers everything that decides how hair lies on `skin`. Parts that `bare` says have no hair; with `preset` they share but its
-/// comb.
+/// What a part is to a preset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Its hair grows there.
+    Furred,
+    /// Skin without hair, in its own colour.
+    Bare,
+    /// A part of the surface that nothing is asked of.
+    Aside,
+}
+
+/// Gathers everything that decides how hair lies on `skin`, whose parts have these roles.
 ///
 /// # Errors
 /// When a map or texture cannot be read, or the comb's sources make no sense.
 pub fn groom(
     asset: &Asset,
     skin: &Skin,
-    bare: impl Fn(usize) -> bool,
+    role: impl Fn(usize) -> Role,
     preset: &Preset,
     scale: &Scale,
 ) -> Result<Groomed> {
     let mut notes = Vec::new();
     let maps = Arc::new(decode(&preset.maps)?);
-    let paint = paint(asset, skin, &bare, preset, &maps, &mut notes)?;
+    let mut skin = skin.clone();
+    skin.mesh.hair_normals = Some(skin.mesh.smooth_normals());
+    let paint = paint(asset, &skin, &role, preset, &maps, &mut notes)?;
     let comb = comb(asset, &skin.mesh, &preset.groom, &maps, scale, &mut notes)?;
     let diagonal_m = scale.diagonal_m as f32;
     let guard = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
@@ -58,7 +70,7 @@ pub fn groom(
     let height_m = if undercoat.height_m() > 0.0 { undercoat.height_m() } else { guard.height_m() };
     let mut fields = fields::gather(&skin.mesh, &preset.groom, paint, comb.direction, height_m);
     parted::part(&skin.mesh, partings(asset, &preset.groom, scale), height_m, &mut fields);
-    Ok(Groomed { fields, skin: skin.clone(), singularities: comb.singularities, notes })
+    Ok(Groomed { fields, skin, singularities: comb.singularities, notes })
 }
 
 impl Groomed {
@@ -74,7 +86,7 @@ impl Groomed {
 
     /// Some parts of it, with hair as on the whole.
     pub fn cut(&self, keep: impl Fn(u32) -> bool) -> Self {
-        let (skin, old) = self.skin.cut(keep);
+        let (skin, old) = self.skin.cut(&keep);
         fn at<T: Copy>(list: &[T], old: &[u32]) -> Vec<T> {
             old.iter().map(|&v| list[v as usize]).collect()
         }
@@ -98,7 +110,15 @@ impl Groomed {
             paint: paint.as_ref().map(cut_paint),
             partings: partings.clone(),
         };
-        Self { skin, fields, singularities: self.singularities.clone(), notes: self.notes.clone() }
+        // Triangles keep their order.
+        let mut number = vec![u32::MAX; self.skin.part_of.len()];
+        (0..number.len()).filter(|&t| keep(self.skin.part_of[t])).zip(0..).for_each(|(t, new)| number[t] = new);
+        let kept = |s: &Singularity| {
+            let triangle = number[s.triangle as usize];
+            (triangle != u32::MAX).then_some(Singularity { triangle, ..*s })
+        };
+        let singularities = self.singularities.iter().filter_map(kept).collect();
+        Self { skin, fields, singularities, notes: self.notes.clone() }
     }
 
     /// Puts the skin into a pose, every part as the node shows it that `node_of` names. Hair follows it as a coat's does: by the
@@ -159,6 +179,8 @@ impl Groomed {
         mesh.position_class.extend(other.position_class.iter().map(|c| c + first));
         mesh.uv_sets.iter_mut().zip(other.uv_sets).for_each(|(own, other)| own.extend(other));
         mesh.hair_normals = None;
+        // Nothing asks for these once the fields are there.
+        (mesh.colour, mesh.fur_length, mesh.fur_region, mesh.fur_direction) = (None, None, None, None);
         self.skin.stored.extend(next.skin.stored);
         self.skin.part_of.extend(next.skin.part_of);
         let (fields, other) = (&mut self.fields, next.fields);
@@ -197,7 +219,7 @@ pub const OF_PRESET: usize = usize::MAX;
 fn paint(
     asset: &Asset,
     skin: &Skin,
-    bare: &impl Fn(usize) -> bool,
+    role: &impl Fn(usize) -> Role,
     preset: &Preset,
     maps: &Arc<Maps>,
     notes: &mut Vec<String>,
@@ -207,8 +229,18 @@ fn paint(
     let mut parts = Vec::with_capacity(asset.parts.len());
     let mut factors = Vec::with_capacity(asset.parts.len());
     for (index, part) in asset.parts.iter().enumerate() {
+        let role = role(index);
+        if role == Role::Aside {
+            factors.push((Vec3::ONE, false));
+            parts.push(Painted::default());
+            continue;
+        }
         let BaseColour { factor, texture } = &part.base_colour;
+        let has_uv = !part.stored.uv_sets.is_empty();
+        // Nothing is decoded that nobody sees.
+        let of_asset = preset.colour.from == ColourSource::Asset && !(colour_map.is_some() && has_uv);
         let texture = texture.clone().filter(|texture| texture.uv_set < part.stored.uv_sets.len());
+        let texture = texture.filter(|_| role == Role::Bare || of_asset);
         let colour = match texture {
             Some(texture) => {
                 let image = match images.entry(texture.image) {
@@ -222,9 +254,8 @@ fn paint(
             None => None,
         };
         let told = colour.is_some() || part.stored.colour.is_some() || factor.truncate() != Vec3::ONE;
-        let has_uv = !part.stored.uv_sets.is_empty();
         // What is painted, the factor on it, and whether vertex colours are a factor too.
-        let (painted, factor, by_vertex) = if bare(index) {
+        let (painted, factor, by_vertex) = if role == Role::Bare {
             // The renderer tints all skin by the preset's factor, which is not for bare skin.
             let skin_factor = Vec3::from(preset.colour.skin).max(Vec3::splat(1e-6));
             (Painted { colour, maps: None, bare: true }, factor.truncate() / skin_factor, true)

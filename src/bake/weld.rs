@@ -29,6 +29,8 @@ pub struct Skin {
     pub stored: Vec<(u32, u32)>,
     /// Per triangle: its part.
     pub part_of: Vec<u32>,
+    /// Per part: how many sets of texture coordinates it has; the mesh has as many as the richest, zeros for others.
+    pub uv_sets: Vec<usize>,
 }
 
 /// A triangle before vertices are numbered.
@@ -275,7 +277,8 @@ fn apart(corners: &Corners, normals: &[Vec3]) -> (Corners, Corners) {
 
 /// Numbers vertices as faces use them.
 fn number(meshes: &[Mesh], faces: &[Face]) -> Skin {
-    let mut skin = Skin::default();
+    let uv_sets = meshes.iter().map(|mesh| mesh.uv_sets.len()).collect();
+    let mut skin = Skin { uv_sets, ..Skin::default() };
     let mut known: HashMap<(u32, u32, u32), u32> = HashMap::new();
     let mut first: HashMap<u32, u32> = HashMap::new();
     for face in faces {
@@ -348,6 +351,8 @@ impl Skin {
             old.iter().map(|&v| list[v as usize]).collect()
         }
         let mut first: HashMap<u32, u32> = HashMap::new();
+        let sets = cut.part_of.iter().map(|&part| self.uv_sets[part as usize]).max().unwrap_or(0);
+        cut.uv_sets = self.uv_sets.clone();
         cut.mesh = Mesh {
             origin_m: whole.origin_m,
             positions_m: at(&whole.positions_m, &old),
@@ -359,7 +364,7 @@ impl Skin {
                 .zip(0..)
                 .map(|(&v, number)| *first.entry(whole.position_class[v as usize]).or_insert(number))
                 .collect(),
-            uv_sets: whole.uv_sets.iter().map(|set| at(set, &old)).collect(),
+            uv_sets: whole.uv_sets[..sets].iter().map(|set| at(set, &old)).collect(),
             colour: whole.colour.as_ref().map(|list| at(list, &old)),
             fur_length: whole.fur_length.as_ref().map(|list| at(list, &old)),
             fur_region: whole.fur_region.as_ref().map(|list| at(list, &old)),

@@ -17,7 +17,13 @@ pub fn offset_over_height(fields: &Fields, v: usize) -> Vec3 {
 
 /// Whether hair grows on a triangle of these skin vertices.
 pub fn is_furred(fields: &Fields, triangle: [usize; 3]) -> bool {
-    triangle.iter().any(|&v| fields.length[v] > SHORTEST && fields.density[v] > 0.0)
+    // What is painted between the vertices counts by the longest hair around them.
+    let density = |v: usize| match fields.paint.as_deref() {
+        Some(paint) if paint.parts[paint.part_of[v] as usize].bare => 0.0,
+        Some(paint) => paint.density[v],
+        None => fields.density[v],
+    };
+    triangle.iter().any(|&v| fields.length[v] > SHORTEST && density(v) > 0.0)
 }
 
 /// How vectors of the world become those of the base primitive's own space at a skin vertex.

@@ -10,8 +10,9 @@ pub const SCREEN: (f64, f64) = (1080.0, 40.0);
 const GAP_PIXELS: f64 = 2.0;
 /// Draw calls that a game can spare for a coat.
 const MANY_DRAW_CALLS: usize = 200;
-/// Graphics memory of a coat vertex: base vertex, patch, UV, offset, axis and tint.
-const VERTEX_BYTES: usize = 4 + 4 + 8 + 12 + 12 + 16;
+/// Graphics memory of a coat vertex: base vertex, patch, UV, offset, axis, normal, tint and longest length. Textures that it reads at
+/// the root are the asset's own.
+const VERTEX_BYTES: usize = 4 + 4 + 8 + 12 + 12 + 12 + 16 + 4;
 /// Graphics memory of a fin: four vertex indices, an interval and a thickness.
 const FIN_BYTES: usize = 16 + 8 + 4;
 

@@ -48,7 +48,7 @@ pub struct Tile {
 }
 
 /// Shells over the opaque skin (layer 0): `layers − 1` slabs of equal height. Slab i ∈ 1 … layers−1 spans heights
-/// (i−1)/(layers−1) … i/(layers−1) of the stack and is drawn at its middle.
+/// (i−1)/(layers−1) … i/(layers−1) of the stack and is drawn at its top.
 ///
 /// The law that gives a slab's opacity (`docs/steps/shells.md`): τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], α = 1 − e^−τ.
 #[derive(Clone, Debug, PartialEq)]

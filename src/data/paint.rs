@@ -27,7 +27,8 @@ pub struct Paint {
     pub part_of: Vec<u32>,
     /// Per vertex: factor on the texture's colour, linear RGB.
     pub factor: Vec<Vec3>,
-    /// Per vertex: the longest length that is painted on the triangles around it, which is that of its offset.
+    /// Per vertex: the longest length that is painted on the triangles around it, where there is hair, which is that of its
+    /// offset.
     pub longest: Vec<f32>,
     /// Per vertex: factor on density.
     pub density: Vec<f32>,
@@ -160,7 +161,8 @@ impl Paint {
         let mut longest = vec![0.0_f32; mesh.positions_m.len()];
         for (t, triangle) in mesh.triangles.iter().enumerate() {
             let painted = self.of(mesh, t);
-            let found = if painted.has_lengths() { longest_on(painted, mesh, t) } else { 1.0 };
+            let told = painted.has_lengths() || painted.has_densities();
+            let found = if told { longest_on(painted, mesh, t) } else { 1.0 };
             for &v in triangle {
                 let slot = &mut longest[mesh.position_class[v as usize] as usize];
                 *slot = slot.max(found);
@@ -175,11 +177,11 @@ fn uv_at(mesh: &Mesh, set: usize, corners: [usize; 3], b: Vec3) -> Vec2 {
     uv[corners[0]] * b.x + uv[corners[1]] * b.y + uv[corners[2]] * b.z
 }
 
-/// The longest length that is painted on a triangle, looked for a texel apart.
+/// The longest length that is painted on a triangle where there is hair at all, looked for a texel apart.
 fn longest_on(painted: &Painted, mesh: &Mesh, t: usize) -> f32 {
     let corners = mesh.triangles[t].map(|v| v as usize);
     let Some(maps) = &painted.maps else { return 1.0 };
-    let size = [&maps.length, &maps.comb]
+    let size = [&maps.length, &maps.comb, &maps.density]
         .into_iter()
         .flatten()
         .map(|image| Vec2::new(image.width as f32, image.height as f32))
@@ -191,7 +193,10 @@ fn longest_on(painted: &Painted, mesh: &Mesh, t: usize) -> f32 {
     for i in 0..=points {
         for j in 0..=points - i {
             let b = Vec3::new(i as f32, j as f32, (points - i - j) as f32) / points as f32;
-            longest = longest.max(painted.length(uv_at(mesh, 0, corners, b)));
+            let uv = uv_at(mesh, 0, corners, b);
+            if painted.map(|maps| &maps.density, uv).is_none_or(|p| p.x > 0.0) {
+                longest = longest.max(painted.length(uv));
+            }
         }
     }
     longest

@@ -235,6 +235,8 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
         Some(recorder.step("lights", || stage.lit(&subject, &stage.camera(&subject)?), |_| 0)?)
     };
     let mut baldness = Baldness::default();
+    let marked = (options.show == Shown::Bald).then(|| bald::marked(&scene));
+    let mut over_skin = marked.as_ref().map(|marked| renderer.prepare(marked)).transpose()?;
     let mut pictures = Vec::with_capacity(viewpoints.len());
     for viewpoint in viewpoints {
         let start = Instant::now();
@@ -259,10 +261,8 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
         };
         recorder.row("draw: camera and light", ms_since(start), 0);
         let mut picture = draw(&mut prepared, &view, show, &mut recorder)?;
-        if options.show == Shown::Bald {
-            let marked = bald::marked(&scene);
-            let over_skin = || renderer.prepare(&marked)?.hair_over_skin(&view);
-            let hair = recorder.step("hair over skin", over_skin, |_| 0)?;
+        if let Some(over_skin) = &mut over_skin {
+            let hair = recorder.step("hair over skin", || over_skin.hair_over_skin(&view), |_| 0)?;
             picture = bald::picture(&hair, &picture);
             let here = Baldness::of(&hair);
             (baldness.furred, baldness.bald) = (baldness.furred + here.furred, baldness.bald + here.bald);

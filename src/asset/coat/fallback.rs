@@ -10,7 +10,7 @@ use crate::asset::json::At;
 use crate::asset::pose::turn;
 use crate::asset::stored::Influences;
 use crate::asset::{Asset, Part};
-use crate::data::coat::{Coat, CoatPrimitive, Cut, Sampled};
+use crate::data::coat::{Blend, Coat, CoatPrimitive, Cut, Sampled};
 use crate::error::Result;
 use crate::math::{Vec3, Vec4};
 use serde_json::{Value, json};
@@ -69,10 +69,32 @@ fn nearest(coat_primitive: &CoatPrimitive, coat: &Coat) -> Vec<CoatPrimitive> {
     let Some(blend) = &coat_primitive.blend else { return vec![coat_primitive.clone()] };
     let second = |t: usize| coat_primitive.triangles[t].iter().map(|&v| blend.weight[v as usize]).sum::<f32>() > 1.5;
     let scale = coat.tiles[coat_primitive.tile].edge_m / coat.tiles[blend.tile].edge_m;
+    if let Some(cut) = &coat_primitive.cut {
+        return nearest_cut(coat_primitive, cut, blend, scale);
+    }
     let mut parts = [coat_primitive.part(|t| !second(t)), coat_primitive.part(second)];
     parts[1].tile = blend.tile;
     parts[1].uv.iter_mut().for_each(|uv| *uv *= scale);
     parts.into_iter().filter(|part| !part.triangles.is_empty()).collect()
+}
+
+/// The same of one that is cut.
+fn nearest_cut(coat_primitive: &CoatPrimitive, cut: &Cut, blend: &Blend, scale: f32) -> Vec<CoatPrimitive> {
+    let weight = |v: u32| -> f32 {
+        let (corners, shares) = cut.inside[v as usize];
+        corners.into_iter().zip(shares).map(|(corner, share)| blend.weight[corner as usize] * share).sum()
+    };
+    let (second, first): (Vec<[u32; 3]>, Vec<[u32; 3]>) =
+        cut.triangles.iter().partition(|t| t.iter().map(|&v| weight(v)).sum::<f32>() > 1.5);
+    let of = |triangles: Vec<[u32; 3]>| CoatPrimitive {
+        cut: Some(Cut { triangles, ..cut.clone() }),
+        blend: None,
+        ..coat_primitive.clone()
+    };
+    let mut into = CoatPrimitive { tile: blend.tile, ..of(second) };
+    into.uv.iter_mut().for_each(|uv| *uv *= scale);
+    let any = |part: &CoatPrimitive| part.cut.as_ref().is_some_and(|cut| !cut.triangles.is_empty());
+    [of(first), into].into_iter().filter(any).collect()
 }
 
 /// Per tile, per shell: a material with the shell's texture.

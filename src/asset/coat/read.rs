@@ -70,7 +70,8 @@ pub fn coat_of(asset: &Asset) -> Result<Coat> {
     let mut users: HashMap<&str, usize> = HashMap::new();
     pools.iter().for_each(|pool| *users.entry(pool).or_default() += 1);
     for (coat_primitive, pool) in coat.primitives.iter_mut().zip(&pools) {
-        if users[pool.as_str()] > 1 {
+        // A vertex that only others of its pool use has no base here.
+        if users[pool.as_str()] > 1 || coat_primitive.base_vertex.contains(&u32::MAX) {
             *coat_primitive = coat_primitive.part(|_| true);
         }
     }

@@ -26,6 +26,8 @@ pub struct Prepared<'a> {
     timer: Timer,
     /// Those of the last picture, kept for the next of the same size.
     targets: Option<Targets>,
+    /// Made when first asked for.
+    depths: Option<DepthPipelines>,
 }
 
 impl<'a> Prepared<'a> {
@@ -58,6 +60,7 @@ impl<'a> Prepared<'a> {
             view,
             timer: Timer::new(gpu, PASSES.len() as u32),
             targets: None,
+            depths: None,
         })
     }
 
@@ -112,14 +115,14 @@ impl<'a> Prepared<'a> {
     }
 
     /// How much hair lies over the skin, as a picture: red is the mean optical depth that all near shells have at a pixel, green
-    /// what they would have on a plane there, at most 4 each slab; blue is 1 where furred skin is seen and nothing before it.
+    /// what they would have on a plane there, at most 4 (red: 4 each slab); blue is 1 where furred skin is seen and nothing before it.
     ///
     /// # Errors
     /// As [`Self::draw`].
-    pub fn hair_over_skin(&self, view: &Frame) -> Result<Picture> {
+    pub fn hair_over_skin(&mut self, view: &Frame) -> Result<Picture> {
         let Renderer { gpu, pipelines, samples, .. } = self.renderer;
         let targets = Targets::new(gpu, pipelines, view.size, *samples)?;
-        let depths = DepthPipelines::new(gpu, pipelines);
+        let depths = self.depths.take().unwrap_or_else(|| DepthPipelines::new(gpu, pipelines));
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view)));
         let mut encoder = gpu.encoder("hair over skin");
         for (index, name) in PASSES.into_iter().enumerate() {
@@ -146,6 +149,7 @@ impl<'a> Prepared<'a> {
             }
         }
         targets.resolve(&mut encoder, pipelines);
+        self.depths = Some(depths);
         gpu.finish(encoder)?;
         targets.picture(gpu, view)
     }
