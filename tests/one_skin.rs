@@ -247,6 +247,32 @@ fn a_thin_double_sided_part_is_furred_on_both_sides() {
     let corners = 3 * single.primitives[0].triangles.len();
     assert_eq!(sides(&single), [corners, 0]);
     assert_eq!(sides(&double), [corners, corners]);
+    // Half of it is one too, as long as the other half holds no more of its edge than is free.
+    let mut document = cut("plane", 1);
+    let whole = document.json["meshes"][0]["primitives"][0].clone();
+    let indices = document.integers(whole["indices"].as_u64().unwrap() as usize, 1).unwrap();
+    let accessor = whole["attributes"]["POSITION"].as_u64().unwrap() as usize;
+    let x: Vec<f32> = document.floats(accessor, 3).unwrap().chunks(3).map(|p| p[0]).collect();
+    let middle = |t: &[u32]| t.iter().map(|&v| x[v as usize]).sum::<f32>() > 0.0;
+    let primitives: Vec<_> = [true, false]
+        .map(|double_sided| {
+            let own = indices.chunks(3).filter(|t| middle(t) == double_sided).flatten().copied();
+            let bytes: Vec<u8> = own.flat_map(u32::to_le_bytes).collect();
+            let view = document.push_view(&bytes, Some(34963));
+            let accessor =
+                json!({"bufferView": view, "componentType": 5125, "count": bytes.len() / 4, "type": "SCALAR"});
+            let mut primitive = whole.clone();
+            primitive["indices"] = document.push("accessors", accessor).into();
+            let material = json!({"name": format!("fur {double_sided}"), "doubleSided": double_sided});
+            primitive["material"] = document.push("materials", material).into();
+            primitive
+        })
+        .to_vec();
+    document.json["meshes"][0]["primitives"] = json!(primitives);
+    let path = write(&document, folder.path(), "half.glb");
+    let (_, half) = baked(&path, &out, &thin(&[]), Method::Lapped);
+    let counts: Vec<usize> = half.primitives.iter().map(|p| p.triangles.len()).collect();
+    assert_eq!(counts[0], 2 * counts[1], "the double-sided half has twice the triangles");
     // A body is no sheet, whatever its material says.
     let mut document = asset::load("sample:sphere").unwrap().document;
     document.json["materials"][0]["doubleSided"] = json!(true);

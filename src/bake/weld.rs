@@ -16,8 +16,9 @@ const TOUCHING: f32 = 1e-3;
 const SAME: f32 = 2e-6;
 /// Share of the shortest edge that welding never reaches.
 const OF_EDGE: f32 = 0.45;
-/// A double-sided part is a sheet, furred on both sides, where its open side is at least this share of its area: a flat one's
-/// is all of it, a body's with a hole at the neck next to nothing.
+/// A double-sided part is a sheet, furred on both sides, where its open side is at least this share of its area (a flat one's
+/// is all of it, a body's with a hole at the neck next to nothing) and no more of its edge is held by skin of one side than is
+/// free, as an ear's.
 const SHEET: f64 = 0.3;
 
 /// The parts of an asset in the rest pose, welded. Vertices that faces on both sides of a hard edge share are told apart.
@@ -183,33 +184,41 @@ fn shortest_edge_m(group: &[usize], meshes: &[Mesh]) -> f32 {
 
 /// The other sides of double-sided sheets, wound the other way. Their places are their own.
 fn backs(asset: &Asset, meshes: &[Mesh], faces: &[Face], furred: impl Fn(usize) -> bool) -> Vec<Face> {
-    let wanted = |face: &&Face| asset.parts[face.part as usize].double_sided && furred(face.part as usize);
-    if !faces.iter().any(|face| wanted(&face)) {
+    let double_sided = |t: usize| asset.parts[faces[t].part as usize].double_sided;
+    let wanted = |t: usize| double_sided(t) && furred(faces[t].part as usize);
+    if !(0..faces.len()).any(wanted) {
         return Vec::new();
     }
     let points: Vec<[u32; 3]> = faces.iter().map(|face| face.points).collect();
     let topology = Topology::new(&points, |v| v);
     let mut component = vec![usize::MAX; faces.len()];
     let mut is_sheet = Vec::new();
-    for first in 0..faces.len() {
+    for first in (0..faces.len()).filter(|&t| double_sided(t)) {
         if component[first] != usize::MAX {
             continue;
         }
         let (number, mut waiting) = (is_sheet.len(), vec![first]);
         let (mut open, mut area) = (DVec3::ZERO, 0.0);
+        // Edges where it ends, and where it goes on in what has one side.
+        let (mut free, mut held) = (0, 0);
         component[first] = number;
         while let Some(t) = waiting.pop() {
             let vector = faces[t].area_vector(meshes);
             open += vector;
             area += vector.length();
-            for other in (0..3).filter_map(|k| topology.neighbour(t, k)) {
-                if component[other] == usize::MAX {
-                    component[other] = number;
-                    waiting.push(other);
+            for k in 0..3 {
+                match topology.neighbour(t, k) {
+                    None => free += 1,
+                    Some(other) if !double_sided(other) => held += 1,
+                    Some(other) if component[other] == usize::MAX => {
+                        component[other] = number;
+                        waiting.push(other);
+                    }
+                    Some(_) => {}
                 }
             }
         }
-        is_sheet.push(open.length() > SHEET * area);
+        is_sheet.push(open.length() > SHEET * area && free >= held);
     }
     let past = points.iter().flatten().max().map_or(0, |&most| most + 1);
     let turned = |[a, b, c]: [u32; 3]| [a, c, b];
@@ -220,7 +229,7 @@ fn backs(asset: &Asset, meshes: &[Mesh], faces: &[Face], furred: impl Fn(usize) 
         seed: combine(face.seed, 1),
         order: face.order,
     };
-    faces.iter().zip(component).filter(|(face, c)| is_sheet[*c] && wanted(face)).map(|(face, _)| back(face)).collect()
+    (0..faces.len()).filter(|&t| wanted(t) && is_sheet[component[t]]).map(|t| back(&faces[t])).collect()
 }
 
 /// Gives faces around a place places of their own where no hair could leave all of them.
