@@ -44,7 +44,7 @@ fn a_coat_is_counted_as_by_hand() {
     assert_eq!(summary.primitives[0].patches, 2);
     let textures = 5 * 16 * (4 + 4 + 1) + 2 * 16 * 4;
     assert_eq!(summary.tiles[0].vram_bytes, textures);
-    assert_eq!(summary.vram_bytes, textures + 4 * 56 + 2 * 12 + 28);
+    assert_eq!(summary.vram_bytes, textures + 4 * 72 + 2 * 12 + 28);
     // 20 mm in 4 slabs: 5 mm spans 2 pixels of 1080 where the view is 2.7 m high.
     let half_view_m = summary.tiles[0].gap_distance_m * 20.0_f64.to_radians().tan();
     assert!((half_view_m - 1.35).abs() < 1e-6, "{half_view_m}");
