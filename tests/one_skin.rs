@@ -222,7 +222,9 @@ fn a_blade_has_hair_of_its_own_on_either_side() {
     let folder = tempfile::tempdir().unwrap();
     let upright = thin(&["groom.comb=upright", "groom.lean_deg=0", "groom.gravity=0"]);
     let (asset, coat) = baked(&blade(folder.path()), &folder.path().join("out.glb"), &upright, Method::Lapped);
-    assert!(least_rise(&asset, &coat) > 0.9, "hair stands upright on both sides: {}", least_rise(&asset, &coat));
+    // Over the edge it fans out, half way towards the other side's.
+    let least = least_rise(&asset, &coat);
+    assert!(least > 0.6 && least < 0.8, "{least}");
     let up = coat.primitives[0].offset.iter().filter(|o| o.y > 0.0).count();
     assert_eq!(coat.primitives[0].offset.len(), 2 * up, "as many corners on each side");
 }

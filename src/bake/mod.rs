@@ -4,6 +4,7 @@ mod atlas;
 mod comb;
 mod cut;
 mod extent;
+mod fan;
 mod finest;
 pub mod picture;
 mod regions;

@@ -59,9 +59,7 @@ pub fn groom(
 ) -> Result<Groomed> {
     let mut notes = Vec::new();
     let maps = Arc::new(decode(&preset.maps)?);
-    let mut skin = skin.clone();
-    skin.mesh.hair_normals = Some(skin.mesh.smooth_normals());
-    let paint = paint(asset, &skin, &role, preset, &maps, &mut notes)?;
+    let paint = paint(asset, skin, &role, preset, &maps, &mut notes)?;
     let comb = comb(asset, &skin.mesh, &preset.groom, &maps, scale, &mut notes)?;
     let diagonal_m = scale.diagonal_m as f32;
     let guard = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
@@ -70,7 +68,7 @@ pub fn groom(
     let height_m = if undercoat.height_m() > 0.0 { undercoat.height_m() } else { guard.height_m() };
     let mut fields = fields::gather(&skin.mesh, &preset.groom, paint, comb.direction, height_m);
     parted::part(&skin.mesh, partings(asset, &preset.groom, scale), height_m, &mut fields);
-    Ok(Groomed { fields, skin, singularities: comb.singularities, notes })
+    Ok(Groomed { fields, skin: skin.clone(), singularities: comb.singularities, notes })
 }
 
 impl Groomed {

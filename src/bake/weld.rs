@@ -1,6 +1,7 @@
 //! All parts of an asset as one surface (`docs/steps/skin.md`): what lies at one place is one place for hair, whichever
 //! primitives, materials or seams meet there; and how a file cuts and orders its triangles changes nothing.
 
+use super::fan::fan;
 use crate::asset::{Asset, Part};
 use crate::data::mesh::{Mesh, position_classes};
 use crate::data::spread::{LEAST_RISE, widest};
@@ -63,7 +64,11 @@ pub fn join(asset: &Asset, furred: impl Fn(usize) -> bool, metres_per_unit: f64,
     faces.extend(backs(asset, &meshes, &faces, furred));
     faces.sort_unstable_by_key(|face| (face.order, face.seed, face.part));
     split(&meshes, &mut faces);
-    Ok(number(&meshes, &faces))
+    let mut skin = number(&meshes, &faces);
+    let mut normals = skin.mesh.smooth_normals();
+    fan(&skin.mesh, &skin.stored, &mut normals);
+    skin.mesh.hair_normals = Some(normals);
+    Ok(skin)
 }
 
 impl Face {
