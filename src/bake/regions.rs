@@ -6,6 +6,7 @@ use super::{Steps, Task};
 use crate::asset::image;
 use crate::coat::axes::axes;
 use crate::data::coat::{Blend, CoatPrimitive, Tile};
+use crate::data::distance::along_edges;
 use crate::data::fields::Fields;
 use crate::data::maps::sample;
 use crate::data::mesh::Mesh;
@@ -16,8 +17,7 @@ use crate::error::{Error, Result};
 use crate::fur::groom::Length;
 use crate::math::Vec3;
 use crate::preset::{Preset, Region};
-use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Shares below this are none: eight bits of a map tell no less.
@@ -136,41 +136,19 @@ fn shares(task: &Task<'_>, own: &Groomed) -> Result<Vec<Vec<f32>>> {
 fn beside(task: &Task<'_>, own: &Groomed, material: &str, reach: Option<Length>, i: usize) -> Result<Vec<f32>> {
     let mesh = own.mesh();
     let class = |v: u32| mesh.position_class[v as usize] as usize;
-    let mut away_m = vec![f32::INFINITY; mesh.positions_m.len()];
-    let mut waiting = BinaryHeap::new();
-    for (triangle, &part) in mesh.triangles.iter().zip(&own.skin.part_of) {
-        if task.asset.parts[part as usize].material_name == material {
-            for &v in triangle {
-                away_m[class(v)] = 0.0;
-                waiting.push((Reverse(0), class(v)));
-            }
-        }
-    }
-    if waiting.is_empty() {
+    let of_material = |(_, part): &(&[u32; 3], &u32)| task.asset.parts[**part as usize].material_name == material;
+    let covered: Vec<usize> = (mesh.triangles.iter().zip(&own.skin.part_of))
+        .filter(of_material)
+        .flat_map(|(triangle, _)| triangle.map(class))
+        .collect();
+    if covered.is_empty() {
         return Err(Error::usage("a region's material is not among those that its preset furs")
             .with_field(format!("regions[{i}].material"))
             .with_found(material)
             .with_expected(format!("one of: {}", task.materials(task.parts))));
     }
-    let mut around: Vec<Vec<usize>> = vec![Vec::new(); away_m.len()];
-    for [a, b, c] in mesh.triangles.iter().map(|t| t.map(class)) {
-        for (from, to) in [(a, b), (b, c), (c, a), (b, a), (c, b), (a, c)] {
-            around[from].push(to);
-        }
-    }
-    // Distances are not negative, so their bits are in their order.
-    while let Some((Reverse(bits), v)) = waiting.pop() {
-        if bits > away_m[v].to_bits() {
-            continue;
-        }
-        for &next in &around[v] {
-            let next_m = away_m[v] + mesh.positions_m[v].distance(mesh.positions_m[next]);
-            if next_m < away_m[next] {
-                away_m[next] = next_m;
-                waiting.push((Reverse(next_m.to_bits()), next));
-            }
-        }
-    }
+    let edges = mesh.triangles.iter().map(|t| t.map(class)).flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let away_m = along_edges(&mesh.positions_m, edges, covered);
     let reach_m = reach.unwrap_or(Length::Mm(20.0)).metres(task.scale.diagonal_m as f32);
     let share = |&class: &u32| {
         let x = (1.0 - away_m[class as usize] / reach_m).clamp(0.0, 1.0);

@@ -2,6 +2,7 @@
 
 pub mod camera;
 pub mod coat;
+pub mod distance;
 pub mod fields;
 pub mod film;
 pub mod image;

@@ -1,10 +1,10 @@
 //! Where skin that should be furred is seen with too little hair over it (`docs/steps/runtime.md`, "Bald skin").
 
+use crate::data::distance::along_edges;
 use crate::math::{Vec3, Vec4};
 use crate::runtime::{CoatMesh, DrawList, Picture};
 use std::borrow::Cow;
-use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashMap};
+use std::collections::HashMap;
 
 /// Less than this share of the hair that the model grows there is bald.
 const BALD: f32 = 0.5;
@@ -73,9 +73,9 @@ pub fn marked<'a>(scene: &DrawList<'a>) -> DrawList<'a> {
     let away_m = away_from_borders(&scene.furs);
     let mark = |(fur, away_m): (&CoatMesh<'a>, Vec<f32>)| {
         let root = |(v, away_m): (usize, f32)| {
-            let painted = fur.root.get(v).map_or(Vec4::ZERO, |root| Vec4::new(0.0, 0.0, root.z, root.w));
+            let own = fur.root.get(v).copied().unwrap_or(Vec4::ZERO);
             let near = 1.0 - away_m / fur.offsets_m[v].length().max(f32::MIN_POSITIVE);
-            Vec4::new(near.clamp(-1e3, 1.0), 0.0, painted.z, painted.w)
+            Vec4::new(near.clamp(-1e3, 1.0), 0.0, own.z, own.w)
         };
         let root: Vec<Vec4> = away_m.into_iter().enumerate().map(root).collect();
         CoatMesh { colour: None, root: Cow::from(root), ..fur.clone() }
@@ -107,32 +107,9 @@ fn away_from_borders(furs: &[CoatMesh<'_>]) -> Vec<Vec<f32>> {
             }
         }
     }
-    let mut around: Vec<Vec<usize>> = vec![Vec::new(); at.len()];
-    let mut away_m = vec![f32::INFINITY; at.len()];
-    let mut waiting = BinaryHeap::new();
-    for (&[a, b], normals) in &edges {
-        around[a].push(b);
-        around[b].push(a);
-        // The two sides of a sheet end in each other.
-        let goes_on = normals.iter().skip(1).any(|normal| normal.dot(normals[0]) > BACK);
-        if !goes_on {
-            for end in [a, b] {
-                away_m[end] = 0.0;
-                waiting.push((Reverse(0), end));
-            }
-        }
-    }
-    while let Some((Reverse(bits), place)) = waiting.pop() {
-        if bits > away_m[place].to_bits() {
-            continue;
-        }
-        for &next in &around[place] {
-            let next_m = away_m[place] + at[place].distance(at[next]);
-            if next_m < away_m[next] {
-                away_m[next] = next_m;
-                waiting.push((Reverse(next_m.to_bits()), next));
-            }
-        }
-    }
+    // The two sides of a sheet end in each other.
+    let ends = |normals: &[Vec3]| normals.iter().skip(1).all(|normal| normal.dot(normals[0]) <= BACK);
+    let borders = edges.iter().filter(|(_, normals)| ends(normals)).flat_map(|(edge, _)| *edge);
+    let away_m = along_edges(&at, edges.keys().copied(), borders);
     of.iter().map(|of| of.iter().map(|&place| away_m[place]).collect()).collect()
 }
