@@ -36,17 +36,22 @@ fn baked(folder: &Path) -> (asset::Asset, Coat) {
     std::fs::write(folder.join("dense.toml"), preset(300.0, 6.0, "")).unwrap();
     let regions = "[[regions]]\npreset = \"dense.toml\"\nmap = \"ramp.png\"\n";
     std::fs::write(folder.join("sparse.toml"), preset(80.0, 8.0, regions)).unwrap();
-    let out = folder.join("two.glb");
+    baked_as("sample:plane".as_ref(), folder, "sparse.toml", Fallback::Shells(2))
+}
+
+/// A file baked with a preset of the folder.
+fn baked_as(input: &Path, folder: &Path, own: &str, fallback: Fallback) -> (asset::Asset, Coat) {
+    let out = folder.join("out.glb");
     let request = Request {
-        input: "sample:plane".into(),
+        input: input.to_string_lossy().into_owned(),
         out: out.clone(),
-        preset: Preset::load(&folder.join("sparse.toml").to_string_lossy()).unwrap(),
+        preset: Preset::load(&folder.join(own).to_string_lossy()).unwrap(),
         presets: vec![],
         materials: vec![],
         units: Units::Metres,
         method: Method::Lapped,
         seed: 1,
-        fallback: Fallback::Shells(2),
+        fallback,
         judge: false,
     };
     bake(&request, &mut |_| ()).unwrap();
@@ -311,21 +316,7 @@ fn of_materials(folder: &Path, reach: &str) -> (asset::Asset, Coat) {
     std::fs::write(folder.join("mane.toml"), preset(300.0, 6.0, "")).unwrap();
     let regions = format!("[[regions]]\npreset = \"mane.toml\"\nmaterial = \"mane\"\nreach = {{ mm = {reach} }}\n");
     std::fs::write(folder.join("body.toml"), preset(80.0, 8.0, &regions)).unwrap();
-    let out = folder.join("out.glb");
-    let request = Request {
-        input: input.to_string_lossy().into_owned(),
-        out: out.clone(),
-        preset: Preset::load(&folder.join("body.toml").to_string_lossy()).unwrap(),
-        presets: vec![],
-        materials: vec![],
-        units: Units::Metres,
-        method: Method::Lapped,
-        seed: 1,
-        fallback: Fallback::None,
-        judge: false,
-    };
-    bake(&request, &mut |_| ()).unwrap();
-    asset::read_coat(&out).unwrap()
+    baked_as(&input, folder, "body.toml", Fallback::None)
 }
 
 #[test]
@@ -364,21 +355,7 @@ fn fallback_shells_of_a_passage_keep_the_colours_of_a_texture() {
     let regions = "[[regions]]\npreset = \"other.toml\"\nmap = \"ramp.png\"\n";
     std::fs::write(folder.path().join("own.toml"), with(regions)).unwrap();
     let input = crate::painted::square(folder.path(), "square.glb", |_, _| [30, 200, 30], 4);
-    let out = folder.path().join("out.glb");
-    let request = Request {
-        input: input.to_string_lossy().into_owned(),
-        out: out.clone(),
-        preset: Preset::load(&folder.path().join("own.toml").to_string_lossy()).unwrap(),
-        presets: vec![],
-        materials: vec![],
-        units: Units::Metres,
-        method: Method::Lapped,
-        seed: 1,
-        fallback: Fallback::Shells(2),
-        judge: false,
-    };
-    bake(&request, &mut |_| ()).unwrap();
-    let (asset, coat) = asset::read_coat(&out).unwrap();
+    let (asset, coat) = baked_as(&input, folder.path(), "own.toml", Fallback::Shells(2));
     assert!(coat.primitives.iter().any(|primitive| primitive.blend.is_some()));
     assert!(coat.primitives.iter().all(|primitive| primitive.colour.is_some()));
     let document = &asset.document;

@@ -40,14 +40,11 @@ pub fn cut(
         uv_sets: part.stored.uv_sets.iter().map(|set| base(set)).collect(),
         ..Mesh::default()
     };
-    let at = |list: &[Vec3]| -> Vec<Vec3> { vertices.iter().map(|&v| list[v as usize]).collect() };
-    let (own_factor, own_longest) =
-        (at(&paint.factor), vertices.iter().map(|&v| paint.longest[v as usize]).collect::<Vec<_>>());
     let own = Paint {
         parts: vec![painted.clone()],
         part_of: vec![0; count],
-        factor: own_factor.clone(),
-        longest: own_longest.clone(),
+        factor: vertices.iter().map(|&v| paint.factor[v as usize]).collect(),
+        longest: vertices.iter().map(|&v| paint.longest[v as usize]).collect(),
         density: vec![1.0; count],
     };
     let zeros = || vec![Vec3::ZERO; count];
@@ -64,20 +61,7 @@ pub fn cut(
     };
     let most = MOST_TRIANGLES.0 + MOST_TRIANGLES.1 * carried.triangles.len();
     let density = |corners: [u32; 3], b: Vec3| Vec3::from(corners.map(|c| carried.tint[c as usize].w)).dot(b);
-    let Some(refined) = refine(&mesh, &fields, Finest { edge_m: diagonal_m / FINEST, triangles: most }) else {
-        // Vertices tell all there is to see.
-        let tint = |v: usize| -> Vec4 {
-            let point = paint.at_vertex_of(&mesh, v, part_index, own_factor[v]);
-            let share = if own_longest[v] > 0.0 { (point.length / own_longest[v]).min(1.0) } else { 0.0 };
-            point.tint.extend(carried.tint[v].w * point.density * share)
-        };
-        return Some(Cut {
-            inside: (0..count as u32).map(|v| ([v; 3], [1.0, 0.0, 0.0])).collect(),
-            tint: (0..count).map(tint).collect(),
-            triangles: carried.triangles.clone(),
-            coarse: false,
-        });
-    };
+    let refined = refine(&mesh, &fields, Finest { edge_m: diagonal_m / FINEST, triangles: most })?;
     // Vertices that no furred triangle uses stay behind.
     let mut new = vec![u32::MAX; refined.origin.len()];
     let mut used = Vec::new();

@@ -199,7 +199,11 @@ impl Groomed {
     }
 }
 
-fn decode(maps: &preset::Maps) -> Result<Maps> {
+/// A preset's maps, decoded.
+///
+/// # Errors
+/// When one cannot be read.
+pub fn decode(maps: &preset::Maps) -> Result<Maps> {
     let load = |path: &Option<std::path::PathBuf>| path.as_deref().map(image::load).transpose();
     Ok(Maps {
         density: load(&maps.density)?,

@@ -1,17 +1,17 @@
 //! Which pictures a coat reads at its roots: the asset's own, and those of a preset's maps, which the file then brings along.
 
-use super::skin::OF_PRESET;
+use super::skin::{OF_PRESET, decode};
 use crate::asset::document::Document;
-use crate::asset::image::{self, png};
+use crate::asset::image::png;
 use crate::data::coat::CoatPrimitive;
-use crate::data::image::Image8;
+use crate::data::image::{Image8, unorm8};
+use crate::data::maps::{Maps, sample};
 use crate::data::paint::Paint;
 use crate::data::texture::Texture;
 use crate::error::Result;
 use crate::math::{Vec2, Vec3};
 use crate::preset::Preset;
 use serde_json::json;
-use std::path::Path;
 
 /// Most texels along a side of what is painted.
 pub const MOST_PAINTED: u32 = 1024;
@@ -36,14 +36,12 @@ impl Textures {
         if !has_uv {
             return Ok(Self::default());
         }
-        let load = |path: &Option<std::path::PathBuf>| path.as_deref().map(|path: &Path| image::load(path)).transpose();
-        let maps = &preset.maps;
-        let (density, length, comb) = (load(&maps.density)?, load(&maps.length)?, load(&maps.comb)?);
+        let Maps { density, length, comb, colour, .. } = decode(&preset.maps)?;
         let painted = painted(density.as_ref(), length.as_ref(), comb.as_ref());
         let mut add = |image: Option<Image8>, name: &str| -> Result<Option<Texture>> {
             image.map(|image| add(document, &image, &format!("{} {name}", preset.name))).transpose()
         };
-        Ok(Self { colour: add(load(&maps.colour)?, "colour")?, painted: add(painted, "density and length")? })
+        Ok(Self { colour: add(colour, "colour")?, painted: add(painted, "density and length")? })
     }
 
     /// What a coat primitive on `part` reads of `paint`. `vertices` are the skin's, one per coat vertex.
@@ -75,7 +73,6 @@ fn painted(density: Option<&Image8>, length: Option<&Image8>, comb: Option<&Imag
     let maps = || [density, length, comb].into_iter().flatten();
     let size = |of: fn(&Image8) -> u32| maps().map(of).max().map(|size| size.min(MOST_PAINTED));
     let (width, height) = (size(|image| image.width)?, size(|image| image.height)?);
-    let plain = Texture::plain(0, 0, 0);
     // Each texel is the mean of what it covers.
     let mean = |map: Option<&Image8>, channel: usize, x: u32, y: u32| {
         let Some(map) = map else { return 1.0 };
@@ -85,7 +82,7 @@ fn painted(density: Option<&Image8>, length: Option<&Image8>, comb: Option<&Imag
                 let at = Vec2::new((i % across) as f32 + 0.5, (i / across) as f32 + 0.5)
                     / Vec2::new(across as f32, down as f32);
                 let uv = (Vec2::new(x as f32, y as f32) + at) / Vec2::new(width as f32, height as f32);
-                plain.sample_linear(map, uv)[channel]
+                sample(map, uv)[channel]
             })
             .sum();
         sum / (across * down) as f32
@@ -94,9 +91,8 @@ fn painted(density: Option<&Image8>, length: Option<&Image8>, comb: Option<&Imag
     for y in 0..height {
         for x in 0..width {
             let at = ((y * width + x) * 4) as usize;
-            let byte = crate::data::image::unorm8;
             let values = [mean(density, 0, x, y), mean(length, 0, x, y) * mean(comb, 3, x, y)];
-            image.pixels[at..at + 4].copy_from_slice(&[byte(values[0]), byte(values[1]), 0, 255]);
+            image.pixels[at..at + 4].copy_from_slice(&[unorm8(values[0]), unorm8(values[1]), 0, 255]);
         }
     }
     Some(image)

@@ -319,7 +319,7 @@ fn number(meshes: &[Mesh], faces: &[Face]) -> Skin {
     let or = |list: &Option<Vec<f32>>, v: usize, other: f32| list.as_ref().map_or(other, |list| list[v]);
     skin.mesh = Mesh {
         origin_m: meshes.first().map_or(DVec3::ZERO, |mesh| mesh.origin_m),
-        positions_m: welded_positions(meshes, &skin),
+        positions_m: gather(stored, |part, v| meshes[part].positions_m[v]),
         normals: gather(stored, |part, v| meshes[part].normals[v]),
         uv_sets: (0..sets)
             .map(|set| gather(stored, |part, v| meshes[part].uv_sets.get(set).map_or(Vec2::ZERO, |uv| uv[v])))
@@ -335,10 +335,6 @@ fn number(meshes: &[Mesh], faces: &[Face]) -> Skin {
         ..skin.mesh
     };
     skin
-}
-
-fn welded_positions(meshes: &[Mesh], skin: &Skin) -> Vec<Vec3> {
-    skin.stored.iter().map(|&(part, v)| meshes[part as usize].positions_m[v as usize]).collect()
 }
 
 impl Skin {

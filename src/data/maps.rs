@@ -1,6 +1,7 @@
 //! Groom maps: images over a mesh's first UV set.
 
 use super::image::Image8;
+use super::texture::{Wrap, bilinear};
 use crate::math::{Vec2, Vec3, Vec4};
 
 /// Decoded maps; each is RGBA.
@@ -27,16 +28,8 @@ impl Maps {
 
 /// Bilinear sample at `uv` (v down, repeating), each channel in [0, 1].
 pub fn sample(image: &Image8, uv: Vec2) -> Vec4 {
-    let size = Vec2::new(image.width as f32, image.height as f32);
-    let p = (uv - uv.floor()) * size - 0.5;
-    let (low, t) = (p.floor(), p - p.floor());
-    let texel = |dx: i64, dy: i64| {
-        let x = (low.x as i64 + dx).rem_euclid(i64::from(image.width)) as u32;
-        let y = (low.y as i64 + dy).rem_euclid(i64::from(image.height)) as u32;
-        let bytes = image.pixel(x, y);
-        Vec4::new(f32::from(bytes[0]), f32::from(bytes[1]), f32::from(bytes[2]), f32::from(bytes[3])) / 255.0
-    };
-    texel(0, 0).lerp(texel(1, 0), t.x).lerp(texel(0, 1).lerp(texel(1, 1), t.x), t.y)
+    let plain = |p: &[u8]| Vec4::new(f32::from(p[0]), f32::from(p[1]), f32::from(p[2]), f32::from(p[3])) / 255.0;
+    bilinear(image, uv, [Wrap::Repeat; 2], plain)
 }
 
 /// What a comb map paints at `uv`, to the right and up in the image; zero where it paints none.

@@ -110,14 +110,9 @@ impl Paint {
 
     /// What is painted at vertex `v`.
     pub fn at_vertex(&self, mesh: &Mesh, v: usize) -> PaintedPoint {
-        let point = self.at_vertex_of(mesh, v, self.part_of[v] as usize, self.factor[v]);
-        PaintedPoint { density: self.density[v] * point.density, ..point }
-    }
-
-    /// What is painted at vertex `v` of a mesh that lies on a part, with this factor on colour.
-    pub fn at_vertex_of(&self, mesh: &Mesh, v: usize, part: usize, factor: Vec3) -> PaintedPoint {
         let uv = |set: usize| mesh.uv_sets.get(set).map_or(Vec2::ZERO, |uv| uv[v]);
-        self.parts[part].at(uv, factor)
+        let point = self.parts[self.part_of[v] as usize].at(uv, self.factor[v]);
+        PaintedPoint { density: self.density[v] * point.density, ..point }
     }
 
     /// What is painted at a point of triangle `t`.

@@ -54,17 +54,10 @@ impl Texture {
             Vec4::new(c(0), c(1), c(2), f32::from(p[3]) / 255.0)
         })
     }
-
-    /// The same of an image whose bytes are plain shares of 255.
-    pub fn sample_linear(&self, image: &Image8, uv: Vec2) -> Vec4 {
-        bilinear(image, self.transformed(uv), self.wrap, |p| {
-            Vec4::new(f32::from(p[0]), f32::from(p[1]), f32::from(p[2]), f32::from(p[3])) / 255.0
-        })
-    }
 }
 
 /// `image` between the middles of four texels around `at`, each decoded by `texel`.
-fn bilinear(image: &Image8, at: Vec2, wrap: [Wrap; 2], texel: impl Fn(&[u8]) -> Vec4) -> Vec4 {
+pub(super) fn bilinear(image: &Image8, at: Vec2, wrap: [Wrap; 2], texel: impl Fn(&[u8]) -> Vec4) -> Vec4 {
     let axis = |coordinate: f32, size: u32, wrap: Wrap| {
         let texel = f64::from(coordinate) * f64::from(size) - 0.5;
         let low = texel.floor();

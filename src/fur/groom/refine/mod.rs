@@ -57,11 +57,11 @@ struct Cut {
 }
 
 /// Cuts triangles on which what is painted differs from what lies between their vertices, as far as `finest` says; `None` where
-/// none does. A posed mesh is cut as in its rest pose.
+/// nothing is painted. A posed mesh is cut as in its rest pose.
 pub fn refine(mesh: &Mesh, fields: &Fields, finest: Finest) -> Option<Refined> {
     let paint = fields.paint.as_deref()?;
     let skin = Painting { mesh, fields, paint };
     let mut cutter = Cutter::new(skin, finest);
     while cutter.round() {}
-    if cutter.cuts.len() == mesh.triangles.len() { None } else { Some(cutter.finish()) }
+    Some(cutter.finish())
 }
