@@ -67,14 +67,15 @@ pub fn picture(hair: &Picture, alpha: &Picture) -> Picture {
     Picture { size: hair.size, pixels, depth_m: alpha.depth_m.clone() }
 }
 
-/// `scene` with skin beside borders of the coat marked, as far as hair is long: it is left out, as hair that leans away from
-/// a border leaves it as free as the model does.
+/// `scene` with skin beside borders of the coat marked, as far as hair leans: it is left out, as hair that leans away from a
+/// border leaves it as free as the model does.
 pub fn marked<'a>(scene: &DrawList<'a>) -> DrawList<'a> {
     let away_m = away_from_borders(&scene.furs);
     let mark = |(fur, away_m): (&CoatMesh<'a>, Vec<f32>)| {
         let root = |(v, away_m): (usize, f32)| {
             let own = fur.root.get(v).copied().unwrap_or(Vec4::ZERO);
-            let near = 1.0 - away_m / fur.offsets_m[v].length().max(f32::MIN_POSITIVE);
+            let leans_m = fur.offsets_m[v].reject_from(fur.normals[v]).length();
+            let near = 1.0 - away_m / leans_m.max(f32::MIN_POSITIVE);
             Vec4::new(near.clamp(-1e3, 1.0), 0.0, own.z, own.w)
         };
         let root: Vec<Vec4> = away_m.into_iter().enumerate().map(root).collect();
