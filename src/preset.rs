@@ -4,6 +4,7 @@ use crate::coat::fins::FinParameters;
 use crate::coat::shells::ShellParameters;
 use crate::error::{Error, Result};
 use crate::fur::groom::{Colour, Groom, Guard, Length, Undercoat};
+use crate::shade::fibre::Fibres;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -81,6 +82,8 @@ pub struct Preset {
     pub groom: Groom,
     /// Colour.
     pub colour: Colour,
+    /// What hairs are made of, and so how they scatter light.
+    pub fibre: Fibres,
     /// Groom maps.
     pub maps: Maps,
     /// Shell textures.
@@ -282,6 +285,7 @@ impl Preset {
         for (i, region) in self.regions.iter().enumerate() {
             region.check(i)?;
         }
+        self.fibre.check()?;
         self.shells.check()?;
         self.fins.check()?;
         Ok(self)

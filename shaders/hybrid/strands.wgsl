@@ -4,7 +4,8 @@
 #import furrier::light::light_at
 #import furrier::camera::view
 #import furrier::guard::{guard_ramp, root_of}
-#import furrier::fur_light::{angles_of, cos_of, guard_lobes, shadow_power, slant_depth, sky_depth, terminator, above_both}
+#import furrier::fur_light::{slant_depth, terminator, above_both}
+#import furrier::law::{Place, angles_of, lit, lit_by_sky, worn_of}
 #import furrier::mean_shadow::{mean_depths, tips_m}
 #import furrier::undercoat_light::key_depth
 
@@ -49,24 +50,31 @@ fn log_radiance_at(strand: Strand, first: u32, i: u32) -> vec3<f32> {
     let albedo = strand.tint * guard_ramp(s);
     let to_eye = unit_or(view.eye_m - point_m, normal);
 
-    let power = shadow_power(albedo * scene.guard_albedo);
-    var sum = scene.ambient * albedo * scene.guard_albedo * exp(-power * sky_depth(above));
+    let worn = worn_of(0u, albedo);
+    let hair_normal = dot(along, normal);
+    let eye_normal = dot(to_eye, normal);
+    let crowding = scene.guard_crowding * density_at(strand.triangle, b);
+    var sum = vec3(0.0);
+    if any(scene.ambient != vec3(0.0)) {
+        let eye_hair = clamp(dot(along, to_eye), -1.0, 1.0);
+        sum = scene.ambient * lit_by_sky(0u, above, eye_hair, hair_normal, eye_normal, worn);
+    }
     for (var k = 0u; k < scene.light_count; k++) {
         let light = light_at(lights[k], point_m);
-        let open = terminator(light.to_light, normal);
-        if open <= 0.0 {
-            continue;
-        }
-        let angles = angles_of(along, light.to_light, to_eye);
-        let s = guard_lobes(angles);
-        let scattered = vec3(s.x) + albedo * s.y + albedo * albedo * s.z;
+        var open = 1.0;
         var depth = 0.0;
         if k == 0u {
             depth = depth_of(strand.triangle, b, height_m, length);
         } else {
+            open = terminator(light.to_light, normal);
+            if open <= 0.0 {
+                continue;
+            }
             depth = slant_depth(above, light.to_light, normal, lean);
         }
-        sum += light.irradiance * scattered * exp(-power * depth) * (cos_of(angles.sin_in) * open);
+        let angles = angles_of(along, light.to_light, to_eye);
+        let place = Place(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, dot(light.to_light, normal));
+        sum += light.irradiance * open * lit(0u, angles, place, worn, crowding);
     }
     return log(max(sum, vec3(1.1754944e-38)));
 }

@@ -1,7 +1,9 @@
 // Fins: quads on edges near the silhouette, with hair seen from the side (Lengyel et al. 2001 §2.3).
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
-#import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
+#import furrier::shading::above_horizon
+#import furrier::law::{Place, angles_of, lit, lit_by_sky, worn_of}
+#import furrier::looks::layer_looks
 #import furrier::constants::{INVISIBLE, LEAST_CLEAR, LEAST_COSINE}
 #import furrier::coat::{CoatVertex, Paint, Root, root_of, depth_of_opacity, presence, closeness}
 
@@ -123,22 +125,29 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     }
 
     let stored = (medium.xyz * 255.0 - 128.0) / 127.0;
-    let agreement = min(length(stored), 1.0);
     let up = normalize(in.offset_m);
-    let tangent = normalize(stored.x * in.along + stored.y * in.across + stored.z * up + up * 1e-6) * agreement;
+    let tangent = normalize(stored.x * in.along + stored.y * in.across + stored.z * up + up * 1e-6);
     let world_ray = ray_direction(in.position_m);
     let normal = normalize(in.normal);
-    let hair = Hair(surface.rgb * tint.rgb, tangent, normal, -world_ray);
-    let outside_depth = -log(max(medium.a, LEAST_CLEAR)) * present;
-    var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
+    // What stands out at the outline is guard hair.
+    let look = 0u;
+    let crowding = layer_looks[arrayLength(&layer_looks) - 1u].crowding;
+    let worn = worn_of(look, surface.rgb * tint.rgb);
+    let to_eye = -world_ray;
+    let hair_normal = dot(tangent, normal);
+    let eye_normal = dot(to_eye, normal);
+    let above = -log(max(medium.a, LEAST_CLEAR)) * present;
+    var radiance = vec3(0.0);
+    if any(view.ambient != vec3(0.0)) {
+        radiance = view.ambient * lit_by_sky(look, above, dot(tangent, to_eye), hair_normal, eye_normal, worn);
+    }
     for (var i = 0u; i < view.light_count; i++) {
         let light = light_at(view.lights[i], in.position_m);
         let cos_light = dot(normal, light.to_light);
-        let along_light = dot(tangent, light.to_light);
-        let lateral = sqrt(max(0.0, 1.0 - along_light * along_light)) / max(abs(cos_light), LEAST_COSINE);
-        let shadow = exp(-outside_depth * lateral);
-        radiance += above_horizon(cos_light) * light.irradiance
-            * scattered(hair, light.to_light, shadow, multiply_scattered(shadow, hair.albedo));
+        let angles = angles_of(tangent, light.to_light, to_eye);
+        let lateral = sqrt(max(0.0, 1.0 - angles.sin_in * angles.sin_in)) / max(abs(cos_light), LEAST_COSINE);
+        let here = Place(above, above * lateral, dot(light.to_light, to_eye), hair_normal, eye_normal, cos_light);
+        radiance += above_horizon(cos_light) * light.irradiance * lit(look, angles, here, worn, crowding);
     }
     return vec4(radiance * opacity, opacity);
 }

@@ -2,7 +2,9 @@
 // where the ray passes its middle.
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
-#import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
+#import furrier::shading::above_horizon
+#import furrier::law::{Place, angles_of, lit, lit_by_sky, worn_of}
+#import furrier::looks::layer_looks
 #import furrier::constants::{DEEPEST_HAIR, INVISIBLE, LEAST_CLEAR, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
 #import furrier::coat::{CoatVertex, Paint, Root, root_of, Filled, filled_slab, Frame, Medium, Footprint, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
     lateral, shadow_slant, depth_of_opacity, presence, path_through_slab, footprint, fetch, run_through_slab, gain, medium_of, fin_share, closeness}
@@ -246,17 +248,26 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let normal = place.normal;
     let world_ray = place.world_ray;
 
-    // m, where there is enough hair for eight bits to tell; its length says how far the hairs agree.
-    let agreement = min(length(medium.tangent) / max(medium.extinction, LEAST_EXTINCTION), 1.0);
-    let tangent = normalize(at.world_from_tile * (medium.tangent + vec3(0.0, 0.0, LEAST_EXTINCTION))) * agreement;
-    let hair = Hair(surface.rgb * tint, tangent, normal, -world_ray);
-    let outside_depth = min(-log(max(surface.a, LEAST_CLEAR)), DEEPEST_HAIR) * present;
-    var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
+    // m, where there is enough hair for eight bits to tell.
+    let tangent = normalize(at.world_from_tile * (medium.tangent + vec3(0.0, 0.0, LEAST_EXTINCTION)));
+    let look = layer_looks[u32(slab.layer)];
+    let worn = worn_of(look.look, surface.rgb * tint);
+    let to_eye = -world_ray;
+    let hair_normal = dot(tangent, normal);
+    let eye_normal = dot(to_eye, normal);
+    // At 45° to upright hair depth is hair area above.
+    let above = min(-log(max(surface.a, LEAST_CLEAR)), DEEPEST_HAIR) * present;
+    var radiance = vec3(0.0);
+    if any(view.ambient != vec3(0.0)) {
+        radiance = view.ambient * lit_by_sky(look.look, above, dot(tangent, to_eye), hair_normal, eye_normal, worn);
+    }
     for (var i = 0u; i < view.light_count; i++) {
         let light = light_at(view.lights[i], in.position_m);
-        let shadow = exp(-outside_depth * shadow_slant(at, light.to_light, medium));
-        let seen = above_horizon(dot(normal, light.to_light));
-        radiance += seen * light.irradiance * scattered(hair, light.to_light, shadow, multiply_scattered(shadow, hair.albedo));
+        let light_normal = dot(normal, light.to_light);
+        let depth = above * shadow_slant(at, light.to_light, medium);
+        let angles = angles_of(tangent, light.to_light, to_eye);
+        let here = Place(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, light_normal);
+        radiance += above_horizon(light_normal) * light.irradiance * lit(look.look, angles, here, worn, look.crowding);
     }
     return vec4(radiance * opacity, opacity);
 }

@@ -17,14 +17,6 @@ struct Kind {
     top_m: f32,
 }
 
-// A lobe along the hair: albedo, shift in rad, -1/(2σ²).
-struct Lobe {
-    albedo: f32,
-    shift_rad: f32,
-    scale: f32,
-    unused: f32,
-}
-
 struct Scene {
     triangle_count: u32,
     layers: u32,
@@ -50,18 +42,13 @@ struct Scene {
     clump_strength: f32,
     step_depth: f32,
     step_layers: f32,
-    undercoat_albedo: f32,
-
-    // Kajiya and Kay's constants: diffuse over π², highlight's albedo times its norm, exponent.
-    undercoat_diffuse: f32,
-    undercoat_specular: f32,
-    undercoat_exponent: f32,
     // Virtual fragments per march.
     groups: f32,
 
     // Radiance from everywhere.
     ambient: vec3<f32>,
-    guard_albedo: f32,
+    // Attenuation of simplified blending, 1/m.
+    attenuation_per_m: f32,
     skin_factor: vec3<f32>,
     taper: f32,
 
@@ -72,20 +59,11 @@ struct Scene {
 
     tip_transparency: f32,
     tip_exponent: f32,
-    tt_azimuth_scale: f32,
-    tt_norm: f32,
-    glint: f32,
-    glint_angle_rad: f32,
-    glint_scale: f32,
-    glint_norm: f32,
-    surround_norm: f32,
-    guard_diffuse: f32,
-    // Attenuation of simplified blending, 1/m.
-    attenuation_per_m: f32,
     // Transmittance below which what is seen already stands for what is behind it.
     opaque: f32,
-    // R, TT, TRT.
-    lobes: array<Lobe, 3>,
+    // Hair area per volume times diameter of guard hair, where the density field is 1, and of undercoat.
+    guard_crowding: f32,
+    undercoat_crowding: f32,
 }
 
 struct Triangle {

@@ -6,7 +6,8 @@
 #import furrier::undercoat::decode_value
 #import furrier::march::Step
 #import furrier::light::light_at
-#import furrier::fur_light::{angles_of, cos_of, kajiya_kay, shadow_power, slant_depth, sky_depth, terminator}
+#import furrier::fur_light::{slant_depth, terminator}
+#import furrier::law::{Place, angles_of, lit, lit_by_sky, worn_of}
 
 // Bytes by level, then corner of sub-elements; of all prisms one after the other.
 @group(1) @binding(1) var<storage, read> shadow: array<u32>;
@@ -49,27 +50,34 @@ fn undercoat_light(taken: Step, origin_m: vec3<f32>, direction: vec3<f32>) -> Ap
     let b = barycentric(taken.point);
     let t = taken.point.t;
     let albedo = tint_at(taken.triangle, b) * undercoat_ramp(t);
-    let power = shadow_power(albedo * scene.undercoat_albedo);
+    let worn = worn_of(1u, albedo);
     let factor = density_at(taken.triangle, b) * length_at(taken.triangle, b);
     let above = factor * table_at(1u, t);
     let normal = normal_at(taken.triangle, b);
-    var radiance = scene.ambient * albedo * scene.undercoat_albedo * exp(-power * sky_depth(above));
+    let to_eye = -direction;
+    let hair_normal = dot(taken.hair, normal);
+    let eye_normal = dot(to_eye, normal);
+    var radiance = vec3(0.0);
+    if any(scene.ambient != vec3(0.0)) {
+        let eye_hair = clamp(dot(taken.hair, to_eye), -1.0, 1.0);
+        radiance = scene.ambient * lit_by_sky(1u, above, eye_hair, hair_normal, eye_normal, worn);
+    }
     for (var i = 0u; i < scene.undercoat_light_count; i++) {
         let light = light_at(lights[i], middle_m);
-        let open = terminator(light.to_light, normal);
-        if open <= 0.0 {
-            continue;
-        }
+        var open = 1.0;
         var depth = 0.0;
         if i == 0u {
             depth = key_depth(taken.triangle, b, t);
         } else {
+            open = terminator(light.to_light, normal);
+            if open <= 0.0 {
+                continue;
+            }
             depth = slant_depth(above, light.to_light, normal, taken.hair);
         }
-        let angles = angles_of(taken.hair, light.to_light, -direction);
-        let scattered = kajiya_kay(angles);
-        radiance += light.irradiance * (albedo * scattered.x + scattered.y) * exp(-power * depth)
-            * (cos_of(angles.sin_in) * open);
+        let angles = angles_of(taken.hair, light.to_light, to_eye);
+        let place = Place(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, dot(light.to_light, normal));
+        radiance += light.irradiance * open * lit(1u, angles, place, worn, scene.undercoat_crowding);
     }
     return Appearance(albedo, radiance);
 }

@@ -24,7 +24,8 @@ pub(super) fn coat_parts(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps
             .with_expected("a preset without regions")
             .with_hint("use `parameterisation` lapped or uv"));
     }
-    let (fibres, recipe) = (task.fibres(task.preset), recipe(task.preset));
+    let fibres = task.fibres(task.preset);
+    let recipe = recipe(task.preset, [&fibres[0], &fibres[1]])?;
     let texels = texels.unwrap_or_else(|| (TEXELS.0 * recipe.shells.texture_size).min(TEXELS.1));
     let tile_m = recipe.shells.tile_mm * 1e-3;
     let all = steps.run("groom", || task.groom(task.preset))?;

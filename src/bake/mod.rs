@@ -23,7 +23,7 @@ use crate::coat::measures::Measures;
 use crate::coat::seams::{WINDOWS, before_after};
 use crate::coat::summary::draw_calls_note;
 use crate::coat::tile::{TileRecipe, bake as bake_tile};
-use crate::data::coat::{Blend, Coat, CoatPrimitive, Tile};
+use crate::data::coat::{Blend, Coat, CoatPrimitive, Tile, TileLooks};
 use crate::error::{Error, Result};
 use crate::fur::field::Singularity;
 use crate::fur::groom::fibre::Fibre;
@@ -31,6 +31,7 @@ use crate::fur::patch::{Parameterisation, parameterise};
 use crate::math::Vec3;
 use crate::metrics::timing;
 use crate::preset::Preset;
+use crate::volume::scene::{HairScattering, Layer};
 use skin::{Groomed, Role};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -260,19 +261,27 @@ impl Task<'_> {
     }
 }
 
-fn recipe(preset: &Preset) -> TileRecipe {
-    TileRecipe {
+/// What is baked of hair of a preset's two kinds.
+fn recipe(preset: &Preset, fibres: [&Fibre; 2]) -> Result<TileRecipe> {
+    let scattering = HairScattering::new(&preset.fibre)?;
+    Ok(TileRecipe {
         preset: preset.name.clone(),
         shells: preset.shells,
         fins: preset.fins,
         skin: Vec3::from(preset.colour.skin),
         lean_deg: preset.groom.lean_deg,
-    }
+        looks: Some(TileLooks {
+            of: [scattering.guard.packed(), scattering.undercoat.packed()],
+            crowding: fibres.map(|fibre| Layer::new(fibre, 1.0, 1.0).crowding),
+            undercoat_share: Vec::new(),
+        }),
+    })
 }
 
 /// Grows and bakes the tile of a preset, and measures it where that is asked for.
-fn tile_of(task: &Task<'_>, preset: &Preset, steps: &mut Steps<'_>) -> (Tile, Option<Vec<CoverageRow>>) {
-    let ([guard, undercoat], recipe, request) = (task.fibres(preset), recipe(preset), task.request);
+fn tile_of(task: &Task<'_>, preset: &Preset, steps: &mut Steps<'_>) -> Result<(Tile, Option<Vec<CoverageRow>>)> {
+    let ([guard, undercoat], request) = (task.fibres(preset), task.request);
+    let recipe = recipe(preset, [&guard, &undercoat])?;
     let edge_m = recipe.shells.tile_mm * 1e-3;
     let hair = steps.run("grow", || TileHair::grow(&guard, &undercoat, edge_m, request.seed));
     let tile = steps.run("tile", || bake_tile(&hair, &recipe));
@@ -281,7 +290,7 @@ fn tile_of(task: &Task<'_>, preset: &Preset, steps: &mut Steps<'_>) -> (Tile, Op
         coverage_table(&hair, &tile, leaning(recipe.lean_deg), effort)
     };
     let accuracy = request.judge.then(|| steps.run("judge", judge));
-    (tile, accuracy)
+    Ok((tile, accuracy))
 }
 
 /// Bakes the tiles of a preset and its regions, and puts them on each part over patches of its own.
@@ -289,7 +298,7 @@ fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: 
     let (others, request) = (regions::presets(task.preset)?, task.request);
     let (mut tiles, mut accuracy) = (Vec::new(), Vec::new());
     for preset in std::iter::once(task.preset).chain(&others) {
-        let (tile, rows) = tile_of(task, preset, steps);
+        let (tile, rows) = tile_of(task, preset, steps)?;
         tiles.push(tile);
         accuracy.extend(rows);
     }

@@ -63,6 +63,7 @@ pub struct Grown {
     groomed: Groomed,
     guard: (crate::data::strands::Strands, Fibre),
     undercoat: Fibre,
+    scattering: HairScattering,
     skin_factor: Vec3,
     only: Only,
     metres_per_unit: f64,
@@ -119,6 +120,7 @@ impl Grown {
         Ok(Self {
             guard: (strands, fibre),
             undercoat,
+            scattering: HairScattering::new(&preset.fibre)?,
             skin_factor: Vec3::from(preset.colour.skin),
             only: request.only,
             metres_per_unit: scale.metres_per_unit,
@@ -146,7 +148,7 @@ impl Grown {
             skin_factor: self.skin_factor,
             guard: (self.only != Only::Undercoat).then_some((&self.guard.0, &self.guard.1)),
             undercoat: (self.only != Only::Guard).then_some(&self.undercoat),
-            scattering: HairScattering::default(),
+            scattering: &self.scattering,
         }
     }
 

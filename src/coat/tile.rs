@@ -5,7 +5,7 @@ use super::hair::{TileHair, leaning};
 use super::shells::deposit::{VoxelLayout, Voxels, mean_slopes};
 use super::shells::encode::{Raw, encode};
 use super::shells::{ShellParameters, ends, gains, shadow, undercoat};
-use crate::data::coat::{Sampled, Tile};
+use crate::data::coat::{Sampled, Tile, TileLooks};
 use crate::math::Vec3;
 
 /// What is baked from a tile's hair.
@@ -21,6 +21,21 @@ pub struct TileRecipe {
     pub skin: Vec3,
     /// Mean lean of the hair on the skin, degrees: the gains are fitted there.
     pub lean_deg: f32,
+    /// How its hair is lit; `undercoat_share` is filled in by the bake.
+    pub looks: Option<TileLooks>,
+}
+
+impl TileRecipe {
+    /// How the hair is lit, by the share of undercoat in each slab.
+    pub(super) fn looks(&self, slab_shares: &[f32]) -> Option<TileLooks> {
+        let undercoat_share = std::iter::once(0.0).chain(slab_shares.iter().copied()).collect();
+        self.looks.clone().map(|looks| TileLooks { undercoat_share, ..looks })
+    }
+}
+
+/// Shares of undercoat per slab, where `guard` is the hair area of guard hair alone.
+pub(super) fn undercoat_shares(guard: &[f32], all: &[f32]) -> Vec<f32> {
+    guard.iter().zip(all).map(|(guard, all)| if *all > 0.0 { (1.0 - guard / all).clamp(0.0, 1.0) } else { 0.0 }).collect()
 }
 
 /// Bakes the textures of a tile.
@@ -34,6 +49,7 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
         let layout = VoxelLayout::tile(size, slabs, hair.edge_m, hair.height_m);
         let mut voxels = Voxels::deposited(layout, &hair.guard, &slopes);
         let mut kappa = ends::guard_ends(&hair.guard, &voxels, &slopes);
+        let guard = slab_means(&voxels.extinction, slabs);
         if let Some(medium) = &hair.undercoat {
             undercoat::add(medium, &slopes, &mut voxels, &mut kappa);
         }
@@ -47,14 +63,15 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
             slopes: &slopes,
             skin_share: &[],
         });
-        (shells, slab_means(&transmittance, slabs))
+        let shares = undercoat_shares(&guard, &slab_means(&voxels.extinction, slabs));
+        (shells, slab_means(&transmittance, slabs), shares)
     };
     let truth = || {
         let mapped = hair.mapped(lean);
         gains::strand_transmittance(mapped.scene(), mapped.edge_m, mapped.height_m, lean)
     };
     let fin = || texture::composite(hair, &recipe.fins);
-    let ((shells, slab_transmittance), (truth, fin)) = rayon::join(shells, || rayon::join(truth, fin));
+    let ((shells, slab_transmittance, shares), (truth, fin)) = rayon::join(shells, || rayon::join(truth, fin));
     let mut tile = Tile {
         preset: recipe.preset.clone(),
         sampled: Sampled::Square,
@@ -62,6 +79,7 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
         height_m: hair.height_m,
         shells,
         fin: texture::encode(&fin, hair, &recipe.fins, &slab_transmittance),
+        looks: recipe.looks(&shares),
     };
     tile.shells.gains = gains::fit(&tile, &truth, lean);
     tile

@@ -45,6 +45,22 @@ pub struct Tile {
     pub shells: ShellStack,
     /// The fin texture.
     pub fin: FinTexture,
+    /// How its hair is lit; none in a file of an earlier version, whose hair is that of the default fibre.
+    pub looks: Option<TileLooks>,
+}
+
+/// Quadruples of numbers of a look: `Look` of `shaders/shared/look.wgsl` says which is which.
+pub const LOOK: usize = 53;
+
+/// How a tile's hair is lit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TileLooks {
+    /// Guard hair and undercoat.
+    pub of: [[[f32; 4]; LOOK]; 2],
+    /// Hair area per volume times diameter, of guard hair and undercoat.
+    pub crowding: [f32; 2],
+    /// Per layer: share of the hair that is undercoat.
+    pub undercoat_share: Vec<f32>,
 }
 
 /// Shells over the opaque skin (layer 0): `layers − 1` slabs of equal height. Slab i ∈ 1 … layers−1 spans heights

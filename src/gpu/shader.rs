@@ -20,7 +20,7 @@ pub struct Source {
 pub enum Text {
     /// A file's text.
     Wgsl(&'static str),
-    /// Constants that Rust and shaders both need, written once, in Rust: the module `furrier::constants`.
+    /// Constants that Rust and shaders both need, written once, in Rust: the module `furrier::` and the source's path.
     Constants(&'static [Constant]),
 }
 
@@ -36,9 +36,9 @@ pub enum Constant {
 }
 
 impl Source {
-    /// The module of `constants`.
-    pub const fn constants(constants: &'static [Constant]) -> Self {
-        Self { path: "constants", text: Text::Constants(constants) }
+    /// The module `furrier::NAME` of `constants`.
+    pub const fn constants(name: &'static str, constants: &'static [Constant]) -> Self {
+        Self { path: name, text: Text::Constants(constants) }
     }
 
     /// Its WGSL.
@@ -47,7 +47,7 @@ impl Source {
             Text::Wgsl(text) => text.into(),
             Text::Constants(constants) => {
                 let lines: String = constants.iter().map(Constant::wgsl).collect();
-                format!("#define_import_path furrier::constants\n{lines}").into()
+                format!("#define_import_path furrier::{}\n{lines}", self.path).into()
             }
         }
     }

@@ -6,11 +6,12 @@ use crate::hybrid::prepared::Prepared;
 use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, MOST, Row, Vec3Row, Vec3s};
 use crate::math::table::Table;
-use crate::shade::{Angles, shadow_power};
+use crate::shade::Angles;
+use crate::shade::law::Place;
 use crate::volume::march::content::Content;
 use crate::volume::march::shadows::Shadows;
 use crate::volume::mean::MeanShadow;
-use crate::volume::scene::{Layer, ramps, sky_depths, slant_depths, terminator, terminators, through};
+use crate::volume::scene::{Layer, ramps, slant_depths, terminators};
 use crate::volume::shell::lattice::Lattices;
 use rayon::prelude::*;
 
@@ -20,7 +21,8 @@ pub struct GuardShader<'a> {
     strands: &'a Strands,
     shadows: Option<&'a Shadows<'a>>,
     eye_m: Vec3,
-    albedo_share: f32,
+    /// Hair area per volume times diameter, where the fields are 1.
+    crowding: f32,
     /// Height at which no hair is left where the length field is 1, m.
     top_m: f32,
     /// Hair area above heights per skin area, by their share of `top_m`, where the fields are 1.
@@ -76,8 +78,6 @@ impl<'a> GuardShader<'a> {
         eye_m: Vec3,
     ) -> Self {
         let scene = &prepared.scene;
-        let p = &scene.scattering.guard;
-        let albedo_share = (p.tt.albedo + p.trt.albedo + p.diffuse) as f32;
         let layer = |fibre| Layer::new(fibre, 1.0, 1.0);
         let layers = [scene.guard.map(|(_, fibre)| layer(fibre)), scene.undercoat.map(layer)];
         let top_m = layers.iter().flatten().map(|l| l.height_m + 5.0 * l.spread_m).fold(f32::MIN_POSITIVE, f32::max);
@@ -89,19 +89,15 @@ impl<'a> GuardShader<'a> {
             LitPoint { s, segment, along: s * last - segment as f32 }
         };
         let sites = (0..LIT_POINTS).map(site).collect();
-        Self { prepared, strands, shadows, eye_m, albedo_share, top_m, above, sites }
+        let crowding = layers[0].map_or(0.0, |layer| layer.crowding);
+        Self { prepared, strands, shadows, eye_m, crowding, top_m, above, sites }
     }
 
     /// Fills the stored shadow that strands beside open borders are lit by, prism by prism: strands of one prism, asking for it
     /// side by side, would wait for each other.
     pub fn prepare(&self, strands: &[u32]) {
         let Some(shadows) = self.shadows else { return };
-        let Prepared { scene, normals, lighting, .. } = self.prepared;
-        let lit = |triangle: u32| {
-            let corners = scene.skin.triangles[triangle as usize].map(|v| v as usize);
-            corners.iter().any(|&v| terminator(lighting.key.at(scene.skin.positions_m[v]).to_light, normals[v]) > 0.0)
-        };
-        let at_border = |&triangle: &u32| shadows.volume.shell().neighbours.at_border(triangle) && lit(triangle);
+        let at_border = |&triangle: &u32| shadows.volume.shell().neighbours.at_border(triangle);
         let roots = strands.par_iter().map(|&strand| self.strands.roots[strand as usize].triangle);
         let mut triangles: Vec<u32> = roots.filter(at_border).collect();
         triangles.sort_unstable();
@@ -134,9 +130,7 @@ impl<'a> GuardShader<'a> {
 
         let points = strands.points_of_m(strand);
         let last = points.len() - 1;
-        let key = &self.prepared.lighting.key;
-        let lit = [0, last].iter().any(|&i| terminator(key.at(points[i]).to_light, normal) > 0.0);
-        let column = lit.then(|| self.column(root.triangle, b, rise, length));
+        let column = self.column(root.triangle, b, rise, length);
         let point = |i: usize| points[i.min(last)];
         // The hair's direction turns evenly from point to point.
         let turn = |i: usize| if i == 0 || i >= last { 2.0 } else { 1.0 };
@@ -161,10 +155,8 @@ impl<'a> GuardShader<'a> {
                 normal,
                 lean: Vec3s::splat(lean),
                 above: self.above.at_lanes(height_m * share_of_top) * factor,
-                key_depth: match &column {
-                    Some(column) => column.depths(height_m),
-                    None => F32s::splat(0.0),
-                },
+                key_depth: column.depths(height_m),
+                crowding: self.crowding * density,
             };
             let Vec3s { x, y, z } = self.radiance(&site);
             let log_radiance = Vec3s::new(log(x), log(y), log(z)).rows();
@@ -191,26 +183,33 @@ impl<'a> GuardShader<'a> {
 
     #[inline(always)]
     fn radiance<I: Isa>(&self, site: &GuardSite<I>) -> Vec3s<I> {
-        let share = site.albedo * F32s::splat(self.albedo_share);
-        let power = Vec3s::new(shadow_power(share.x), shadow_power(share.y), shadow_power(share.z));
+        let hair = &self.prepared.scene.scattering.guard;
+        let Vec3s { x, y, z } = site.albedo;
+        let worn = hair.wear([x, y, z]);
+        let normals = [site.hair.dot(site.normal), site.to_eye.dot(site.normal)];
         let lighting = self.prepared.lighting;
-        let ambient = share.times(Vec3s::splat(lighting.ambient));
-        let mut sum = ambient.times(through(power, sky_depths(site.above)));
-        let lobes = self.prepared.lobes.map(F32s::splat);
+        let mut sum = Vec3s::splat(Vec3::ZERO);
+        let crowding = F32s::splat(site.crowding);
         for (i, light) in lighting.all().enumerate() {
             let (to_light, irradiance) = light.at_lanes(site.at_m);
             let angles = Angles::of_lanes(site.hair, to_light, site.to_eye);
-            let s = lobes.scatter(angles);
-            let twice = site.albedo.times(site.albedo) * s.twice;
-            let scattered = (site.albedo * s.once + twice).plus(s.plain);
-            let depth = match i {
-                0 => site.key_depth,
-                _ => slant_depths(site.above, to_light, site.normal, site.lean),
+            let (depth, open) = match i {
+                0 => (site.key_depth, F32s::splat(1.0)),
+                _ => (
+                    slant_depths(site.above, to_light, site.normal, site.lean),
+                    terminators(to_light, site.normal),
+                ),
             };
-            let shadow = through(power, depth);
-            let open = terminators(to_light, site.normal);
-            let irradiance = irradiance * (angles.cos_in() * open);
-            sum = sum + scattered.times(shadow).times(irradiance);
+            let normals = [normals[0], normals[1], to_light.dot(site.normal)];
+            let place = Place::new(angles, to_light.dot(site.to_eye), site.above, depth, normals);
+            let [x, y, z] = hair.light(angles, &place, &worn, crowding);
+            sum = sum + Vec3s::new(x, y, z).times(irradiance * open);
+        }
+        if lighting.ambient != Vec3::ZERO {
+            let angles = Angles::of_lanes(site.hair, site.normal, site.to_eye);
+            let place = Place::new(angles, normals[1], site.above, site.above, [normals[0], normals[1], normals[1]]);
+            let [x, y, z] = hair.sky(&place, &worn);
+            sum = sum + Vec3s::new(x, y, z).times(Vec3s::splat(lighting.ambient));
         }
         sum
     }
@@ -258,4 +257,6 @@ struct GuardSite<I: Isa> {
     above: F32s<I>,
     /// Optical depth towards the key light.
     key_depth: F32s<I>,
+    /// Hair area per volume times diameter.
+    crowding: f32,
 }

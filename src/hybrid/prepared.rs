@@ -4,7 +4,6 @@ use super::settings::Settings;
 use crate::error::Result;
 use crate::math::Vec3;
 use crate::metrics::timing::Steps;
-use crate::shade::lobes::Lobes;
 use crate::stage::projection::Projection;
 use crate::volume::march::content::Content;
 use crate::volume::march::volume::{Volume, splits};
@@ -23,8 +22,6 @@ pub struct Prepared<'a> {
     pub settings: Settings,
     /// The skin's smooth normals.
     pub normals: Vec<Vec3>,
-    /// How guard hair scatters.
-    pub lobes: Lobes<f32>,
     /// What fills the shell; none where no undercoat grows.
     pub content: Option<Content<'a>>,
     /// The key light's shadow in the mean; none where nothing grows.
@@ -39,7 +36,6 @@ pub struct Prepared<'a> {
 /// Names a scattering parameter out of range.
 pub fn prepare<'a>(scene: &Scene<'a>, lighting: &'a Lighting, settings: &Settings) -> Result<Prepared<'a>> {
     let start = Instant::now();
-    let lobes = Lobes::new(&scene.scattering.guard)?;
     let normals = scene.skin.smooth_normals();
     let (content, mean) = rayon::join(
         || Content::new(scene, &normals, settings.resolution),
@@ -47,7 +43,7 @@ pub fn prepare<'a>(scene: &Scene<'a>, lighting: &'a Lighting, settings: &Setting
     );
     let mut steps = Steps::default();
     steps.add_since("shell", start, content.as_ref().map_or(0, |content| content.shell.bytes()));
-    Ok(Prepared { scene: *scene, lighting, settings: *settings, normals, lobes, content, mean, steps })
+    Ok(Prepared { scene: *scene, lighting, settings: *settings, normals, content, mean, steps })
 }
 
 impl Prepared<'_> {

@@ -2,11 +2,12 @@
 
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, Vec3s};
-use crate::shade::kajiya_kay::KajiyaKay;
-use crate::shade::{Angles, shadow_power};
+use crate::shade::Angles;
+use crate::shade::law::light::WornColour;
+use crate::shade::law::{Place, Scattering};
 use crate::volume::march::MarchSteps;
 use crate::volume::march::content::Content;
-use crate::volume::scene::{Lighting, Scene, ramps, sky_depths, slant_depths, terminators, through};
+use crate::volume::scene::{Layer, Lighting, Scene, ramps, slant_depths, terminators};
 use crate::volume::shell::prisms::Prisms;
 
 /// Shades undercoat. Holds what does not change from step to step.
@@ -14,21 +15,21 @@ use crate::volume::shell::prisms::Prisms;
 pub struct UndercoatShader<'a> {
     lighting: &'a Lighting,
     eye_m: Vec3,
-    scatter: KajiyaKay<f32>,
-    albedo_share: f32,
+    hair: &'a Scattering,
     ramp: [Vec3; 3],
+    /// Hair area per volume times diameter, where the fields are 1.
+    crowding: f32,
 }
 
 impl<'a> UndercoatShader<'a> {
     /// For a scene's undercoat, seen from `eye_m`.
-    pub fn new(scene: &Scene<'_>, lighting: &'a Lighting, eye_m: Vec3) -> Self {
-        let hair = &scene.scattering;
+    pub fn new(scene: &Scene<'a>, lighting: &'a Lighting, eye_m: Vec3) -> Self {
         Self {
             lighting,
             eye_m,
-            scatter: KajiyaKay::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent),
-            albedo_share: hair.undercoat_diffuse as f32,
+            hair: &scene.scattering.undercoat,
             ramp: scene.undercoat.map_or([Vec3::ONE; 3], |fibre| fibre.profile.ramp),
+            crowding: scene.undercoat.map_or(0.0, |fibre| Layer::new(fibre, 1.0, 1.0).crowding),
         }
     }
 
@@ -43,46 +44,53 @@ impl<'a> UndercoatShader<'a> {
         shadow: F32s<I>,
     ) -> (Vec3s<I>, Vec3s<I>) {
         let albedo = prisms.tint(steps.b).times(ramps(&self.ramp, steps.t));
-        let share = albedo * F32s::splat(self.albedo_share);
-        let power = Vec3s::new(shadow_power(share.x), shadow_power(share.y), shadow_power(share.z));
+        let worn = self.hair.wear([albedo.x, albedo.y, albedo.z]);
         let above = content.above(prisms, steps);
         let normal = prisms.normal(steps.b);
-        let mut radiance = share.times(Vec3s::splat(self.lighting.ambient)).times(through(power, sky_depths(above)));
-        let site =
-            UndercoatSite { albedo, power, normal, hair: steps.hair, to_eye: steps.direction * F32s::splat(-1.0) };
+        let to_eye = steps.direction * F32s::splat(-1.0);
+        let normals = [steps.hair.dot(normal), to_eye.dot(normal)];
+        let crowding = F32s::splat(self.crowding);
         let middle_m = Vec3s::splat(self.eye_m) + steps.direction * (steps.from_m + steps.length_m * 0.5);
-        radiance = radiance + self.lit(&site, self.lighting.key.at_lanes(middle_m), shadow);
+        let site = UndercoatSite { worn, normal, normals, hair: steps.hair, to_eye, above, crowding };
+        let (to_light, irradiance) = self.lighting.key.at_lanes(middle_m);
+        let mut radiance = self.lit(&site, to_light, shadow).times(irradiance);
         if self.lighting.fill_on_undercoat {
             for light in &self.lighting.fill {
-                let arriving = light.at_lanes(middle_m);
-                let depth = slant_depths(above, arriving.0, normal, steps.hair);
-                radiance = radiance + self.lit(&site, arriving, depth);
+                let (to_light, irradiance) = light.at_lanes(middle_m);
+                let depth = slant_depths(above, to_light, normal, steps.hair);
+                let open = terminators(to_light, normal);
+                radiance = radiance + self.lit(&site, to_light, depth).times(irradiance * open);
             }
+        }
+        if self.lighting.ambient != Vec3::ZERO {
+            let angles = Angles::of_lanes(steps.hair, normal, to_eye);
+            let place = Place::new(angles, normals[1], above, above, [normals[0], normals[1], normals[1]]);
+            let [x, y, z] = self.hair.sky(&place, &site.worn);
+            radiance = radiance + Vec3s::new(x, y, z).times(Vec3s::splat(self.lighting.ambient));
         }
         (albedo, radiance)
     }
 
-    /// What a light gives through an optical depth.
+    /// What hair sends to the eye of an irradiance of 1 from `to_light`, through an optical depth.
     #[inline(always)]
-    fn lit<I: Isa>(
-        &self,
-        site: &UndercoatSite<I>,
-        (to_light, irradiance): (Vec3s<I>, Vec3s<I>),
-        depth: F32s<I>,
-    ) -> Vec3s<I> {
-        let open = terminators(to_light, site.normal);
+    fn lit<I: Isa>(&self, site: &UndercoatSite<I>, to_light: Vec3s<I>, depth: F32s<I>) -> Vec3s<I> {
         let angles = Angles::of_lanes(site.hair, to_light, site.to_eye);
-        let (tinted, plain) = self.scatter.map(F32s::splat).scatter(angles);
-        let irradiance = irradiance * (angles.cos_in() * open);
-        (site.albedo * tinted).plus(plain).times(through(site.power, depth)).times(irradiance)
+        let normals = [site.normals[0], site.normals[1], to_light.dot(site.normal)];
+        let place = Place::new(angles, to_light.dot(site.to_eye), site.above, depth, normals);
+        let [x, y, z] = self.hair.light(angles, &place, &site.worn, site.crowding);
+        Vec3s::new(x, y, z)
     }
 }
 
 /// Undercoat to be lit.
 struct UndercoatSite<I: Isa> {
-    albedo: Vec3s<I>,
-    power: Vec3s<I>,
+    worn: WornColour<F32s<I>>,
     normal: Vec3s<I>,
+    /// Cosines of hair and eye to it.
+    normals: [F32s<I>; 2],
     hair: Vec3s<I>,
     to_eye: Vec3s<I>,
+    /// Hair area above per skin area.
+    above: F32s<I>,
+    crowding: F32s<I>,
 }

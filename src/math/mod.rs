@@ -6,6 +6,7 @@ pub mod lanes;
 pub mod noise;
 pub mod radix;
 pub mod sampling;
+pub mod solve;
 pub mod sparse;
 pub mod split;
 pub mod table;

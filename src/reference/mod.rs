@@ -86,7 +86,7 @@ const LEAST: [f64; 2] = [2e-3, 0.01];
 /// Renders a picture: what [`crate::hybrid::draw`] should have drawn.
 ///
 /// # Errors
-/// Names what keeps the camera from looking anywhere, or a scattering parameter out of range.
+/// Names what keeps the camera from looking anywhere.
 pub fn draw(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Film> {
     let origin_m = scene.skin.origin_m;
     Projection::new(camera, origin_m, settings.size)?;
@@ -95,7 +95,7 @@ pub fn draw(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &
     let guard = scene.guard.map(|(strands, _)| GuardCones::new(strands, scene.skin));
     let medium = DMedium::new(scene, &normals, settings.pattern);
     let tracer = Tracer { skin: &skin, guard: guard.as_ref(), medium: medium.as_ref() };
-    let shader = Shader::new(scene, lighting, &tracer, &normals)?;
+    let shader = Shader::new(scene, lighting, &tracer, &normals);
     let reference = Reference { tracer, shader, lens: Pinhole::new(camera, origin_m, settings.size) };
     let [width, height] = settings.size;
     let all = |key: u64, lines: &(dyn Fn(usize) -> usize + Sync)| -> Vec<Sum> {

@@ -9,11 +9,10 @@ use super::point::DShellPoint;
 use super::skin::SkinBvh;
 use super::trace::Tracer;
 use crate::data::strands::Strands;
-use crate::error::Result;
 use crate::math::{DVec3, Vec3};
-use crate::shade::kajiya_kay::KajiyaKay;
-use crate::shade::lobes::Lobes;
-use crate::shade::{Angles, shadow_power};
+use crate::shade::Angles;
+use crate::shade::law::{Place, Scattering};
+use crate::volume::mean::BLOCKED;
 use crate::volume::scene::{Layer, Lighting, Scene, sky_depth, slant_depth, terminator};
 use std::f64::consts::FRAC_1_PI;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -50,6 +49,8 @@ struct Site {
     above: f32,
     /// Optical depth towards the key light.
     key_depth: f64,
+    /// Hair area per volume times diameter.
+    crowding: f64,
 }
 
 /// Shades what rays find.
@@ -61,31 +62,27 @@ pub struct Shader<'a> {
     /// Optical depths towards the key light at heights of guard hairs, as bits of f32; NaN where not asked for yet.
     shadows: Vec<AtomicU32>,
     skin: &'a SkinBvh,
-    lobes: Lobes<f64>,
-    undercoat: KajiyaKay<f64>,
+    /// Hair area per volume times diameter of guard hair and undercoat, where the fields are 1.
+    crowding: [f32; 2],
     normals: &'a [Vec3],
 }
 
 impl<'a> Shader<'a> {
     /// For a scene.
-    ///
-    /// # Errors
-    /// As [`Lobes::new`].
-    pub fn new(scene: &'a Scene<'a>, lighting: &'a Lighting, tracer: &Tracer<'a>, normals: &'a [Vec3]) -> Result<Self> {
-        let hair = &scene.scattering;
+    pub fn new(scene: &'a Scene<'a>, lighting: &'a Lighting, tracer: &Tracer<'a>, normals: &'a [Vec3]) -> Self {
         let Tracer { skin, guard, medium } = *tracer;
         let heights = guard.map_or(0, |guard| guard.strands().len() * heights_of(guard.strands()));
-        Ok(Self {
+        Self {
             scene,
             lighting,
             medium,
             skin,
             guard,
             shadows: std::iter::repeat_with(|| AtomicU32::new(f32::NAN.to_bits())).take(heights).collect(),
-            lobes: Lobes::new(&hair.guard)?,
-            undercoat: KajiyaKay::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent),
+            crowding: [scene.guard.map(|(_, fibre)| fibre), scene.undercoat]
+                .map(|fibre| fibre.map_or(0.0, |fibre| Layer::new(fibre, 1.0, 1.0).crowding)),
             normals,
-        })
+        }
     }
 
     /// Undercoat at a point, seen along `direction`.
@@ -97,13 +94,9 @@ impl<'a> Shader<'a> {
         let hair = medium.hair(point);
         let height_m = point.t * self.height_m(point);
         let site = self.site(point, medium.slabs.position_m(point), height_m, hair, self.key_depth(point));
-        let diffuse = albedo * self.scene.scattering.undercoat_diffuse;
-        let scattered = |angles: Angles<f64>| {
-            let (tinted, plain) = self.undercoat.scatter(angles);
-            albedo * tinted + plain
-        };
-        let fill = self.lighting.fill_on_undercoat;
-        let radiance = self.hair(&site, diffuse, hair, -direction, fill, scattered);
+        let site = Site { crowding: f64::from(self.crowding[1]), ..site };
+        let look = &self.scene.scattering.undercoat;
+        let radiance = self.hair(&site, look, albedo, hair, -direction, self.lighting.fill_on_undercoat);
         Appearance { radiance, albedo, tangent: hair, normal: DVec3::ZERO }
     }
 
@@ -126,13 +119,9 @@ impl<'a> Shader<'a> {
         let site = self.site(&foot, at_m, height_m, lean, self.hair_depth(strand, along_strand));
         let albedo =
             strands.tint[strand as usize].as_dvec3() * strands.profile.ramp_at(guard.s(along_strand) as f32).as_dvec3();
-        let p = &self.scene.scattering.guard;
-        let share = albedo * (p.tt.albedo + p.trt.albedo + p.diffuse);
-        let scattered = |angles: Angles<f64>| {
-            let s = self.lobes.scatter(angles);
-            DVec3::splat(s.plain) + albedo * s.once + albedo * albedo * s.twice
-        };
-        let radiance = self.hair(&site, share, tangent, -direction, true, scattered);
+        let density = self.scalar(&self.scene.fields.density, &foot);
+        let site = Site { crowding: f64::from(self.crowding[0]) * density, ..site };
+        let radiance = self.hair(&site, &self.scene.scattering.guard, albedo, tangent, -direction, true);
         Appearance { radiance, albedo, tangent, normal: DVec3::ZERO }
     }
 
@@ -146,7 +135,7 @@ impl<'a> Shader<'a> {
         let at_m = self.vector(&self.scene.skin.positions_m, point);
         // The back of the skin is bare.
         let site = if back {
-            Site { at_m, normal, lean, above: 0.0, key_depth: 0.0 }
+            Site { at_m, normal, lean, above: 0.0, key_depth: 0.0, crowding: 0.0 }
         } else {
             self.site(point, at_m, 0.0, lean, self.key_depth(point))
         };
@@ -164,28 +153,23 @@ impl<'a> Shader<'a> {
     }
 
     /// Ambient light and all lights on hair of direction `hair`.
-    fn hair(
-        &self,
-        site: &Site,
-        share: DVec3,
-        hair: DVec3,
-        to_eye: DVec3,
-        fill: bool,
-        scattered: impl Fn(Angles<f64>) -> DVec3,
-    ) -> DVec3 {
-        let power = DVec3::new(shadow_power(share.x), shadow_power(share.y), shadow_power(share.z));
-        let through = |depth: f64| (power * -depth).map(libm::exp);
-        let mut sum = self.lighting.ambient.as_dvec3() * share * through(f64::from(sky_depth(site.above)));
+    fn hair(&self, site: &Site, look: &Scattering, albedo: DVec3, hair: DVec3, to_eye: DVec3, fill: bool) -> DVec3 {
+        let worn = look.wear(albedo.to_array());
+        let (above, normal) = (f64::from(site.above), site.normal);
+        let normals = [hair.dot(normal), to_eye.dot(normal)];
+        let angles = Angles::of_dvectors(hair, normal, to_eye);
+        let place = Place::new(angles, normals[1], above, above, [normals[0], normals[1], normals[1]]);
+        let mut sum = self.lighting.ambient.as_dvec3() * DVec3::from(look.sky(&place, &worn));
         let count = if fill { 1 + self.lighting.fill.len() } else { 1 };
         for (i, light) in self.lighting.all().take(count).enumerate() {
             let light = Arriving::new(light, site.at_m);
-            let open = f64::from(terminator(light.to_light.as_vec3(), site.normal.as_vec3()));
-            if open <= 0.0 {
-                continue;
-            }
-            let angles = Angles::of_dvectors(hair, light.to_light.normalize(), to_eye);
+            let open = if i == 0 { 1.0 } else { f64::from(terminator(light.to_light.as_vec3(), normal.as_vec3())) };
+            let to_light = light.to_light.normalize();
+            let angles = Angles::of_dvectors(hair, to_light, to_eye);
             let depth = self.depth(i, light.to_light.as_vec3(), site);
-            sum += light.irradiance * scattered(angles) * through(depth) * (angles.cos_in() * open);
+            let normals = [normals[0], normals[1], to_light.dot(normal)];
+            let place = Place::new(angles, to_light.dot(to_eye), above, depth, normals);
+            sum += light.irradiance * DVec3::from(look.light(angles, &place, &worn, site.crowding)) * open;
         }
         sum
     }
@@ -205,7 +189,7 @@ impl<'a> Shader<'a> {
         let above = |fibre| Layer::new(fibre, density, length).above(height_m as f32);
         let own = self.scene.undercoat.map_or(0.0, above);
         let guard = self.scene.guard.map_or(0.0, |(_, fibre)| above(fibre));
-        Site { at_m, normal: self.normal(point), lean, above: own + guard, key_depth }
+        Site { at_m, normal: self.normal(point), lean, above: own + guard, key_depth, crowding: 0.0 }
     }
 
     /// Optical depth of hair between a point and the key light, up to the first skin.
@@ -213,13 +197,11 @@ impl<'a> Shader<'a> {
         let Some(medium) = self.medium else { return 0.0 };
         let at_m = medium.slabs.position_m(point);
         let Arriving { to_light, distance_m, .. } = Arriving::new(&self.lighting.key, at_m);
-        if terminator(to_light.as_vec3(), self.normal(point).as_vec3()) <= 0.0 {
-            return 0.0;
-        }
         let from_m = 1e-7 * self.height_m(point);
         let ray = DRay::new(at_m, to_light.normalize());
         let to_m = self.skin.meet(&ray, from_m).map_or(f64::INFINITY, |(at_m, _)| at_m);
-        medium.depth_along(&ray, from_m, to_m.min(distance_m), Counted::Both, DARK)
+        let blocked = if to_m < distance_m { f64::from(BLOCKED) } else { 0.0 };
+        blocked + medium.depth_along(&ray, from_m, to_m.min(distance_m), Counted::Both, DARK)
     }
 
     /// The same for a guard hair, which is shadowed as the column over its own root is: a cubic through four heights of it.

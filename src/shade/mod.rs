@@ -4,7 +4,9 @@
 //! et al. 2003), θ being the inclination to the plane at a right angle to the hair. A hair under uniform light of radiance 1
 //! then sends back ∫ S cos θ_i dω_i, which is its albedo and must not pass 1.
 
+pub mod fibre;
 pub mod kajiya_kay;
+pub mod law;
 pub mod lobes;
 mod real;
 

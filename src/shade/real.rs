@@ -10,10 +10,16 @@ pub trait Real:
 {
     /// The nearest value to `x`.
     fn of(x: f64) -> Self;
+    /// `x` itself.
+    fn of32(x: f32) -> Self;
     /// √self.
     fn sqrt(self) -> Self;
-    /// e^self.
+    /// e^self, for self ≤ 0.
     fn exp(self) -> Self;
+    /// e^self, for self up to 80.
+    fn exp_any(self) -> Self;
+    /// Natural logarithm, for self > 0.
+    fn ln(self) -> Self;
     /// self^power, for self ≥ 0.
     fn powf(self, power: Self) -> Self;
     /// Arc sine, rad; self in [−1, 1].
@@ -40,16 +46,25 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($type:ty, $exp:path, $pow:path, $asin:path, $acos:path, $cos:path) => {
+    ($type:ty, $exp:path, $ln:path, $pow:path, $asin:path, $acos:path, $cos:path) => {
         impl Real for $type {
             fn of(x: f64) -> Self {
                 x as $type
+            }
+            fn of32(x: f32) -> Self {
+                <$type>::from(x)
             }
             fn sqrt(self) -> Self {
                 <$type>::sqrt(self)
             }
             fn exp(self) -> Self {
                 $exp(self)
+            }
+            fn exp_any(self) -> Self {
+                $exp(self)
+            }
+            fn ln(self) -> Self {
+                $ln(self)
             }
             fn powf(self, power: Self) -> Self {
                 $pow(self, power)
@@ -70,8 +85,8 @@ macro_rules! real {
     };
 }
 
-real!(f32, libm::expf, libm::powf, libm::asinf, libm::acosf, libm::cosf);
-real!(f64, libm::exp, libm::pow, libm::asin, libm::acos, libm::cos);
+real!(f32, libm::expf, libm::logf, libm::powf, libm::asinf, libm::acosf, libm::cosf);
+real!(f64, libm::exp, libm::log, libm::pow, libm::asin, libm::acos, libm::cos);
 
 /// Exponents at most 0, powers of numbers in [0, 1] and angles in [−π, π] are all that scattering asks for.
 impl<I: Isa> Real for F32s<I> {
@@ -80,12 +95,24 @@ impl<I: Isa> Real for F32s<I> {
         Self::splat(x as f32)
     }
     #[inline(always)]
+    fn of32(x: f32) -> Self {
+        Self::splat(x)
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         self.sqrt()
     }
     #[inline(always)]
     fn exp(self) -> Self {
         self.exp_negative()
+    }
+    #[inline(always)]
+    fn exp_any(self) -> Self {
+        self.exp()
+    }
+    #[inline(always)]
+    fn ln(self) -> Self {
+        self.log2() * std::f32::consts::LN_2
     }
     #[inline(always)]
     fn powf(self, power: Self) -> Self {

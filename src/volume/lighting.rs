@@ -1,9 +1,28 @@
 //! Which way shadows of lights go.
 
 use super::scene::Lighting;
+use crate::gpu::Constant::{self, F32};
+use crate::shade::law::polynomial::{DEEPEST, LOWEST_EYE, LOWEST_LIGHT, SLANTS};
+use crate::shade::law::{BRIGHTEST, FADING, LEAST_ABOVE, MOST_SLANT, colour};
 use crate::data::light::Light;
 use crate::data::mesh::Mesh;
 use crate::math::Vec3;
+
+/// What the law of light in Rust and in shaders both need: the module `furrier::law_constants`.
+pub const LAW_CONSTANTS: [Constant; 12] = [
+    F32("COLOUR_NEAR", colour::NEAR as f32),
+    F32("LEAST_LOG_ABSORPTION", colour::LOG_ABSORPTIONS[0] as f32),
+    F32("MOST_LOG_ABSORPTION", colour::LOG_ABSORPTIONS[1] as f32),
+    F32("DEEPEST_LAW", DEEPEST as f32),
+    F32("LOWEST_LIGHT", LOWEST_LIGHT as f32),
+    F32("LOWEST_EYE", LOWEST_EYE as f32),
+    F32("SLANT_LEAST", SLANTS[0] as f32),
+    F32("SLANT_MOST", SLANTS[1] as f32),
+    F32("LEAST_ABOVE", LEAST_ABOVE as f32),
+    F32("MOST_SLANT", MOST_SLANT as f32),
+    F32("FADING", FADING as f32),
+    F32("BRIGHTEST", BRIGHTEST as f32),
+];
 
 /// Distance of a key light from the middle of the skin's bounds, in diagonals of these, below which pictures of dense fur are more than
 /// 0.05 of FLIP off, as the shadow of guard hair is followed along one direction.

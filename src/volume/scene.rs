@@ -7,8 +7,11 @@ use crate::data::strands::Strands;
 use crate::fur::groom::fibre::Fibre;
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, Vec3s};
-use crate::shade::lobes::LobeParameters;
+use crate::error::Result;
+use crate::shade::fibre::Fibres;
+use crate::shade::law::known::{self, Scattering};
 use crate::stage::light::Lit;
+use std::sync::LazyLock;
 
 /// Skin and hair of a picture.
 #[derive(Clone, Copy, Debug)]
@@ -24,30 +27,32 @@ pub struct Scene<'a> {
     /// Undercoat, as a volume.
     pub undercoat: Option<&'a Fibre>,
     /// How hairs scatter.
-    pub scattering: HairScattering,
+    pub scattering: &'a HairScattering,
 }
 
 /// How both kinds of hair scatter light.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HairScattering {
     /// Guard hair.
-    pub guard: LobeParameters,
-    /// Diffuse albedo of undercoat, times its colour.
-    pub undercoat_diffuse: f64,
-    /// Albedo of undercoat's highlight.
-    pub undercoat_specular: f64,
-    /// Exponent of undercoat's highlight.
-    pub undercoat_exponent: f64,
+    pub guard: Scattering,
+    /// Undercoat.
+    pub undercoat: Scattering,
 }
 
-impl Default for HairScattering {
-    fn default() -> Self {
-        Self {
-            guard: LobeParameters::default(),
-            undercoat_diffuse: 0.9,
-            undercoat_specular: 0.05,
-            undercoat_exponent: 8.0,
-        }
+impl HairScattering {
+    /// That of no hair, for what is asked of its opacity alone.
+    pub fn none() -> &'static Self {
+        static NONE: LazyLock<HairScattering> = LazyLock::new(HairScattering::default);
+        &NONE
+    }
+
+    /// Of a preset's fibres; those that do not come with the program are solved.
+    ///
+    /// # Errors
+    /// As [`known::scattering`].
+    pub fn new(fibres: &Fibres) -> Result<Self> {
+        let of = |parameters| known::scattering(fibres.model, parameters);
+        Ok(Self { guard: of(&fibres.guard)?, undercoat: of(&fibres.undercoat)? })
     }
 }
 
@@ -87,6 +92,8 @@ pub struct Layer {
     pub height_m: f32,
     /// Standard deviation of height, m.
     pub spread_m: f32,
+    /// Hair area per volume times diameter: how much of a hair's light and shadow are its neighbours' own.
+    pub crowding: f32,
 }
 
 impl Layer {
@@ -96,10 +103,12 @@ impl Layer {
         let rise = fibre.height_m() / longest;
         let height_m = fibre.length_m * rise * length;
         let mean_diameter_m = fibre.radius_m * (1.0 + fibre.profile.taper);
+        let area_per_m = fibre.density_per_m2 * density * mean_diameter_m / rise.max(1e-3);
         Self {
-            area_per_m: fibre.density_per_m2 * density * mean_diameter_m / rise.max(1e-3),
+            area_per_m,
             height_m,
             spread_m: height_m * fibre.shape.length_variation,
+            crowding: area_per_m * mean_diameter_m,
         }
     }
 

@@ -4,7 +4,7 @@ use crate::asset::Document;
 use crate::asset::encode::numbers;
 use crate::asset::json::At;
 use crate::asset::ktx2::{self, Format};
-use crate::data::coat::{FinTexture, GAIN_ANGLES_DEG, Sampled, ShellStack, Tile};
+use crate::data::coat::{FinTexture, GAIN_ANGLES_DEG, LOOK, Sampled, ShellStack, Tile, TileLooks};
 use crate::data::image::Image8;
 use crate::error::Result;
 use crate::math::Vec2;
@@ -53,7 +53,38 @@ pub fn write(document: &mut Document, tile: &Tile) -> Result<Value> {
     if tile.sampled == Sampled::Skin {
         value["sampled"] = json!("skin");
     }
+    if let Some(looks) = &tile.looks {
+        let [guard, undercoat] = looks.of.each_ref().map(|look| numbers(look.as_flattened()));
+        value["looks"] = json!({
+            "guard": guard,
+            "undercoat": undercoat,
+            "crowding": numbers(&looks.crowding),
+            "undercoatShare": numbers(&looks.undercoat_share),
+        });
+    }
     Ok(value)
+}
+
+/// Reads how the hair of a tile with so many layers is lit.
+fn looks(at: &At<'_>, layers: usize) -> Result<TileLooks> {
+    let finite = |at: &At<'_>| -> Result<f32> {
+        let number = at.number()? as f32;
+        if number.is_finite() { Ok(number) } else { Err(at.fault("a finite number")) }
+    };
+    let list = |key: &str, count: usize| -> Result<Vec<f32>> {
+        let found = at.list(key)?.iter().map(finite).collect::<Result<Vec<_>>>()?;
+        if found.len() == count { Ok(found) } else { Err(at.need(key)?.fault(&format!("{count} numbers"))) }
+    };
+    let look = |key: &str| -> Result<[[f32; 4]; LOOK]> {
+        let numbers = list(key, 4 * LOOK)?;
+        Ok(std::array::from_fn(|row| std::array::from_fn(|i| numbers[4 * row + i])))
+    };
+    let crowding = list("crowding", 2)?;
+    Ok(TileLooks {
+        of: [look("guard")?, look("undercoat")?],
+        crowding: [crowding[0], crowding[1]],
+        undercoat_share: list("undercoatShare", layers)?,
+    })
 }
 
 /// Reads a tile back.
@@ -111,7 +142,9 @@ pub fn read(document: &Document, at: &At<'_>) -> Result<Tile> {
         Some(sampled) if sampled.value == &json!("skin") => Sampled::Skin,
         Some(sampled) => return Err(sampled.fault("\"skin\", or nothing for a tile that repeats")),
     };
+    let looks = at.get("looks").map(|at| looks(&at, albedo[0].len())).transpose()?;
     Ok(Tile {
+        looks,
         preset: at.need("preset")?.text()?.to_owned(),
         sampled,
         edge_m: float(at, "edge")?,

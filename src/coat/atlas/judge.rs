@@ -103,7 +103,7 @@ impl<'a> CoatedSkin<'a> {
             skin_factor: Vec3::ONE,
             guard: None,
             undercoat: Some(self.hair[1]),
-            scattering: HairScattering::default(),
+            scattering: HairScattering::none(),
         };
         Content::new(&scene, normals, Resolution::default())
     }

@@ -13,7 +13,7 @@ use crate::coat::shells::deposit::{VoxelLayout, Voxels, mean_slopes};
 use crate::coat::shells::encode::{Raw, encode};
 use crate::coat::shells::undercoat::{self, Profile};
 use crate::coat::shells::{ends, gains, shadow};
-use crate::coat::tile::{TileRecipe, slab_means};
+use crate::coat::tile::{TileRecipe, slab_means, undercoat_shares};
 use crate::data::coat::{Sampled, Tile};
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
@@ -192,15 +192,17 @@ impl Reference {
             let slopes = mean_slopes(&thin.guard, slabs, full.height_m);
             let layout = VoxelLayout::tile(size, slabs, edge_m, full.height_m);
             let (mut voxels, mut ends) = guard.deposit(layout, &thin.guard, &slopes);
+            let guard_means = slab_means(&voxels.extinction, slabs);
             if let Some(medium) = &thin.undercoat {
                 undercoat::add(medium, &slopes, &mut voxels, &mut ends);
             }
-            (Filled::new(voxels, ends), slopes)
+            let shares = undercoat_shares(&guard_means, &slab_means(&voxels.extinction, slabs));
+            (Filled::new(voxels, ends), slopes, shares)
         };
         let along_skin = fins::grown(skins, hair, &full, combine(seed, 3));
         let fin_hair = along_skin.as_ref().unwrap_or(&full);
         let fin = || texture::composite(fin_hair, &recipe.fins);
-        let ((filled, slopes), (truth, fin)) = rayon::join(stack, || rayon::join(truth, fin));
+        let ((filled, slopes, shares), (truth, fin)) = rayon::join(stack, || rayon::join(truth, fin));
         let shells = encode(&Raw {
             voxels: &filled.voxels,
             ends: &filled.ends,
@@ -218,6 +220,7 @@ impl Reference {
             height_m: full.height_m,
             shells,
             fin,
+            looks: recipe.looks(&shares),
         };
         let reach = |s: &Strands| {
             let far = |i: usize| s.points_of_m(i).iter().map(move |p| (*p - s.points_of_m(i)[0]).truncate().length());

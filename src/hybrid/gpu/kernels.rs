@@ -2,6 +2,7 @@
 
 use super::constants::CONSTANTS;
 use crate::error::{Error, Result};
+use crate::volume::lighting::LAW_CONSTANTS;
 use crate::gpu::{Binding, Gpu, Kernel, Library, Source, Text};
 
 macro_rules! source {
@@ -11,8 +12,12 @@ macro_rules! source {
 }
 
 /// Modules that others import, imported ones first.
-pub const SHARED: [Source; 18] = [
-    Source::constants(&CONSTANTS),
+pub const SHARED: [Source; 22] = [
+    Source::constants("constants", &CONSTANTS),
+    Source::constants("law_constants", &LAW_CONSTANTS),
+    source!("shared/look.wgsl"),
+    source!("hybrid/looks.wgsl"),
+    source!("shared/law.wgsl"),
     source!("shared/hash.wgsl"),
     source!("shared/noise.wgsl"),
     source!("shared/prism.wgsl"),
@@ -87,7 +92,7 @@ impl Layouts {
     fn new(gpu: &Gpu) -> Self {
         use Binding::{Read, Uniform, Write};
         Self {
-            scene: gpu.layout("scene", &[Uniform, Read, Read, Read, Read, Read, Read, Read]),
+            scene: gpu.layout("scene", &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read]),
             volume: gpu.layout("volume", &[Read, Read]),
             frame: gpu.layout("frame", &[Uniform, Write, Write, Write, Write, Write, Write, Write]),
             blocks: gpu.layout("blocks", &[Uniform, Read, Write]),

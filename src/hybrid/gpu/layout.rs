@@ -4,8 +4,6 @@ use crate::fur::groom::fibre::Fibre;
 use crate::hybrid::Settings;
 use crate::hybrid::resolve::Blending;
 use crate::math::Vec3;
-use crate::shade::kajiya_kay::KajiyaKay;
-use crate::shade::lobes::Lobes;
 use crate::stage::projection::Projection;
 use crate::volume::scene::{Layer, Lighting, Scene};
 use bytemuck::{Pod, Zeroable};
@@ -22,20 +20,6 @@ pub struct KindUniform {
     pub variation: f32,
     /// Height of the tallest where the length field is 1, m.
     pub top_m: f32,
-}
-
-/// `Lobe` of `shared/scene.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct LobeUniform {
-    /// Albedo over the lobe's own integral.
-    pub albedo: f32,
-    /// Shift along the hair, rad.
-    pub shift_rad: f32,
-    /// −1 / (2σ²).
-    pub scale: f32,
-    /// Fills sixteen bytes.
-    pub unused: f32,
 }
 
 /// `Scene` of `shared/scene.wgsl`.
@@ -62,13 +46,9 @@ pub struct SceneUniform {
     pub clump_strength: f32,
     pub step_depth: f32,
     pub step_layers: f32,
-    pub undercoat_albedo: f32,
-    pub undercoat_diffuse: f32,
-    pub undercoat_specular: f32,
-    pub undercoat_exponent: f32,
     pub groups: f32,
     pub ambient: [f32; 3],
-    pub guard_albedo: f32,
+    pub attenuation_per_m: f32,
     pub skin_factor: [f32; 3],
     pub taper: f32,
     pub undercoat_ramp: [[f32; 4]; 3],
@@ -77,26 +57,16 @@ pub struct SceneUniform {
     pub undercoat_kind: KindUniform,
     pub tip_transparency: f32,
     pub tip_exponent: f32,
-    pub tt_azimuth_scale: f32,
-    pub tt_norm: f32,
-    pub glint: f32,
-    pub glint_angle_rad: f32,
-    pub glint_scale: f32,
-    pub glint_norm: f32,
-    pub surround_norm: f32,
-    pub guard_diffuse: f32,
-    pub attenuation_per_m: f32,
     pub opaque: f32,
-    pub lobes: [LobeUniform; 3],
+    pub guard_crowding: f32,
+    pub undercoat_crowding: f32,
+    pub padding: [f32; 3],
 }
 
 impl SceneUniform {
     /// Light and hair of a scene; counts, and what only undercoat has, are left to be filled in.
-    pub fn new(scene: &Scene<'_>, lobes: &Lobes<f32>, lighting: &Lighting, settings: &Settings) -> Self {
-        let hair = &scene.scattering;
-        let scatter = KajiyaKay::<f32>::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent);
+    pub fn new(scene: &Scene<'_>, lighting: &Lighting, settings: &Settings) -> Self {
         let guard = scene.guard;
-        let [undercoat_diffuse, undercoat_specular, undercoat_exponent] = scatter.coefficients();
         let (groups, attenuation_per_m) = match settings.blending {
             Blending::Virtual { fragments } => (fragments.clamp(1, 64) as f32, 0.0),
             Blending::Simplified { attenuation_per_m } => (1.0, attenuation_per_m),
@@ -122,13 +92,9 @@ impl SceneUniform {
             undercoat_light_count: if lighting.fill_on_undercoat { lights } else { 1 },
             step_depth: settings.stepping.depth,
             step_layers: settings.stepping.layers,
-            undercoat_albedo: hair.undercoat_diffuse as f32,
-            undercoat_diffuse,
-            undercoat_specular,
-            undercoat_exponent,
             groups,
             ambient: lighting.ambient.to_array(),
-            guard_albedo: (hair.guard.tt.albedo + hair.guard.trt.albedo + hair.guard.diffuse) as f32,
+            attenuation_per_m,
             skin_factor: scene.skin_factor.to_array(),
             taper: profile.map_or(1.0, |p| p.taper),
             undercoat_ramp: ramp(scene.undercoat.map_or([Vec3::ONE; 3], |fibre| fibre.profile.ramp)),
@@ -137,22 +103,9 @@ impl SceneUniform {
             undercoat_kind: scene.undercoat.map_or(KindUniform::default(), kind),
             tip_transparency: profile.map_or(0.0, |p| p.tip_transparency),
             tip_exponent: profile.map_or(1.0, |p| p.tip_exponent),
-            tt_azimuth_scale: lobes.tt_azimuth_scale,
-            tt_norm: lobes.tt_norm,
-            glint: lobes.glint,
-            glint_angle_rad: lobes.glint_angle_rad,
-            glint_scale: lobes.glint_scale,
-            glint_norm: lobes.glint_norm,
-            surround_norm: lobes.surround_norm,
-            guard_diffuse: lobes.diffuse,
-            attenuation_per_m,
             opaque: settings.opaque,
-            lobes: lobes.lobes.map(|lobe| LobeUniform {
-                albedo: lobe.albedo,
-                shift_rad: lobe.shift_rad,
-                scale: lobe.scale,
-                unused: 0.0,
-            }),
+            guard_crowding: guard.map_or(0.0, |(_, fibre)| Layer::new(fibre, 1.0, 1.0).crowding),
+            undercoat_crowding: scene.undercoat.map_or(0.0, |fibre| Layer::new(fibre, 1.0, 1.0).crowding),
             ..Self::default()
         }
     }

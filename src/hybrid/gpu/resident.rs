@@ -29,6 +29,8 @@ pub(super) struct Resident {
     pub lights: wgpu::Buffer,
     /// Columns of the mean shadow by triangle and corner of its lattice.
     pub columns: wgpu::Buffer,
+    /// The looks of guard hair and undercoat.
+    pub looks: wgpu::Buffer,
     /// Outer faces of the shell.
     pub faces: wgpu::Buffer,
     /// Bytes of skin and shell.
@@ -73,10 +75,10 @@ impl Resident {
     /// # Errors
     /// [`crate::error::Kind::Device`] where something does not fit the adapter.
     pub(super) fn new(gpu: &Gpu, prepared: &Prepared<'_>) -> Result<Self> {
-        let Prepared { scene, lighting, settings, normals, lobes, content, mean, .. } = prepared;
+        let Prepared { scene, lighting, settings, normals, content, mean, .. } = prepared;
         let shell = content.as_ref().map(|content| &content.shell);
         let faces = shell.map_or(Vec::new(), faces);
-        let mut uniform = SceneUniform::new(scene, lobes, lighting, settings);
+        let mut uniform = SceneUniform::new(scene, lighting, settings);
         uniform.face_count = faces.len() as u32;
         if let Some(Shell { undercoat, .. }) = shell {
             uniform.density_per_square_m = undercoat.density_per_m2;
@@ -104,6 +106,7 @@ impl Resident {
             lights: gpu.read_only("lights", &lighting.all().map(LightItem::from).collect::<Vec<_>>())?,
             columns: gpu.read_only("columns", mean.as_ref().map_or(&[], MeanShadow::numbers))?,
             faces: gpu.read_only("faces", &faces)?,
+            looks: gpu.read_only("looks", &[scene.scattering.guard.packed(), scene.scattering.undercoat.packed()])?,
             whole: OnceLock::new(),
         })
     }

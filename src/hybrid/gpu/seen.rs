@@ -112,6 +112,7 @@ impl Seen {
                 &hair.strands,
                 &hair.points,
                 &resident.columns,
+                &resident.looks,
             ],
         );
 

@@ -1,7 +1,10 @@
 //! Structs as the shaders read them; `tests/shaders.rs` compares names, offsets and sizes with the WGSL.
 
-use crate::data::coat::{FinEdge, Sampled, ShellStack, Tile};
+use crate::data::coat::{FinEdge, LOOK, Sampled, ShellStack, Tile};
+use crate::error::Result;
 use crate::gpu::light::LightItem;
+use crate::shade::fibre::{FibreModel, FibreParameters};
+use crate::shade::law::known;
 use crate::runtime::draw_list::{CoatMesh, Frame, MAX_LIGHTS, SkinMesh};
 use bytemuck::{Pod, Zeroable};
 
@@ -77,6 +80,44 @@ impl Mip {
 /// mips with a thousandth of that scale as exactly.
 pub fn medium_unit_per_m(shells: &ShellStack) -> f32 {
     shells.extinction_scales_per_m.iter().fold(f32::MIN_POSITIVE, |most, &scale| most.max(scale)) / 1024.0
+}
+
+/// `LayerLook` of `runtime/looks.wgsl`: how the hair of a layer is lit.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct LayerLook {
+    /// Number of its look: 0 guard hair, 1 undercoat.
+    pub look: u32,
+    /// Hair area per volume times diameter.
+    pub crowding: f32,
+}
+
+/// Looks of a tile's hair, and which of them each layer has.
+pub struct LitLayers {
+    /// `Look` of `shared/look.wgsl`.
+    pub looks: [[[f32; 4]; LOOK]; 2],
+    /// One per layer.
+    pub layers: Vec<LayerLook>,
+}
+
+impl LayerLook {
+    /// Those of a tile: a layer is lit as the kind of hair of which it has more. Tiles of earlier versions say nothing of theirs;
+    /// their hair is that of the default fibre.
+    ///
+    /// # Errors
+    /// As [`known::scattering`].
+    pub fn of(tile: &Tile) -> Result<LitLayers> {
+        let Some(looks) = &tile.looks else {
+            let default = known::scattering(FibreModel::default(), &FibreParameters::default())?.packed();
+            let layers = vec![Self { look: 0, crowding: 0.0 }; tile.shells.layers as usize];
+            return Ok(LitLayers { looks: [default; 2], layers });
+        };
+        let of = |&share: &f32| {
+            let look = usize::from(share > 0.5);
+            Self { look: look as u32, crowding: looks.crowding[look] }
+        };
+        Ok(LitLayers { looks: looks.of, layers: looks.undercoat_share.iter().map(of).collect() })
+    }
 }
 
 impl TileUniform {

@@ -4,6 +4,7 @@ use super::constants::CONSTANTS;
 use super::layout::SkinVertex;
 use crate::error::Result;
 use crate::gpu::{Gpu, Source, Text};
+use crate::volume::lighting::LAW_CONSTANTS;
 
 macro_rules! source {
     ($path:literal) => {
@@ -12,8 +13,12 @@ macro_rules! source {
 }
 
 /// Modules that others import, imported ones first.
-pub const SHARED: [Source; 5] = [
-    Source::constants(&CONSTANTS),
+pub const SHARED: [Source; 9] = [
+    Source::constants("constants", &CONSTANTS),
+    Source::constants("law_constants", &LAW_CONSTANTS),
+    source!("shared/look.wgsl"),
+    source!("runtime/looks.wgsl"),
+    source!("shared/law.wgsl"),
     source!("shared/light.wgsl"),
     source!("shared/view.wgsl"),
     source!("shared/shading.wgsl"),
@@ -88,7 +93,7 @@ impl Layouts {
         };
         Self {
             view: group("view", &[uniform]),
-            tile: group("tile", &[uniform, storage, storage, sampler, array, array, array]),
+            tile: group("tile", &[uniform, storage, storage, sampler, array, array, array, storage, storage]),
             geometry: group("geometry", &[storage, storage, uniform, sampler, array, sampler, array]),
             material: group("material", &[sampler, array, sampler, array]),
             fin: group("fin", &[sampler, array, array]),

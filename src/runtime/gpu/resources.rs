@@ -1,6 +1,6 @@
 //! What pictures need on the device: tiles, and the geometry of a pose.
 
-use super::layout::{CoatVertex, FinInstance, Mip, PaintUniform, SkinVertex, TileUniform, medium_unit_per_m};
+use super::layout::{CoatVertex, FinInstance, LayerLook, Mip, PaintUniform, SkinVertex, TileUniform, medium_unit_per_m};
 use super::pipelines::Layouts;
 use crate::data::coat::{FinTexture, Sampled, ShellStack, Tile};
 use crate::data::image::Image8;
@@ -82,6 +82,9 @@ impl GpuTile {
         let slopes: Vec<[f32; 2]> = shells.slopes.iter().map(|slope| slope.to_array()).collect();
         let slopes = gpu.buffer("slopes", &slopes, wgpu::BufferUsages::STORAGE);
         let mips = gpu.buffer("mips", &Mip::of(tile), wgpu::BufferUsages::STORAGE);
+        let lit = LayerLook::of(tile)?;
+        let looks = gpu.buffer("looks", &lit.looks, wgpu::BufferUsages::STORAGE);
+        let layer_looks = gpu.buffer("layer looks", &lit.layers, wgpu::BufferUsages::STORAGE);
         let wrap = if tile.sampled == Sampled::Square { Wrap::Repeat } else { Wrap::Clamp };
         let hair_sampler = sampler(gpu, [wrap; 2], 1);
         let group = bind(
@@ -95,6 +98,8 @@ impl GpuTile {
                 view(&albedo),
                 view(&medium),
                 view(&ends),
+                looks.as_entire_binding(),
+                layer_looks.as_entire_binding(),
             ],
         );
         let fin_sampler = sampler(gpu, [Wrap::Repeat, Wrap::Clamp], 4);
@@ -128,6 +133,7 @@ pub fn bare_tile() -> Tile {
             medium: texel(4),
             ends: texel(1),
         },
+        looks: None,
         fin: FinTexture { size: [1, 1], width_m: 1.0, thickness_m: 1.0, albedo: fin.clone(), tangent: fin },
     }
 }

@@ -30,6 +30,9 @@ pub const LAYERS: usize = 24;
 /// Optical depth beyond which no light is left.
 const DARK: f32 = 15.0;
 
+/// Optical depth that skin before the light counts for.
+pub const BLOCKED: f32 = 8.0;
+
 /// How far from its origin a ray may meet the first face, and how far apart the ends of hair are that count as one, in
 /// heights of the tips.
 const NEAR: f32 = 1e-4;
@@ -274,7 +277,8 @@ impl<'a> MeanShadow<'a> {
                 if own[0] + own[1] < DARK {
                     own = found.depths;
                 }
-                depths[i] = [own[0], own[1], 0.0];
+                let blocked = if column_ray.far_m.is_finite() { BLOCKED } else { 0.0 };
+                depths[i] = [own[0], own[1], blocked];
                 let ColumnRay { own: ray, tips_m, far_m, mut exits } = column_ray;
                 // Where it leaves hair that it has been followed through.
                 let end_m = found.end_m.filter(|_| ray.is_some_and(|ray| ray.onwards)).unwrap_or(f32::NAN);

@@ -1,0 +1,211 @@
+// The law by which fur is lit, as src/shade/fibre/ and src/shade/law/. One scattering is the fibre's own, through the followed
+// shadow; all further ones come from the law's terms.
+#define_import_path furrier::law
+
+#import furrier::law_constants::{BRIGHTEST, COLOUR_NEAR, DEEPEST_LAW, FADING, LEAST_ABOVE, LEAST_LOG_ABSORPTION, LOWEST_EYE, LOWEST_LIGHT,
+    MOST_LOG_ABSORPTION, MOST_SLANT, SLANT_LEAST, SLANT_MOST}
+#import furrier::looks::looks
+
+// Between a hair, light and eye; directions point away from the hair.
+struct Angles {
+    sin_in: f32,
+    sin_out: f32,
+    cos_azimuth: f32,
+}
+
+fn angles_of(hair: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> Angles {
+    let sin_in = clamp(dot(hair, to_light), -1.0, 1.0);
+    let sin_out = clamp(dot(hair, to_eye), -1.0, 1.0);
+    let across = sqrt(max((1.0 - sin_in * sin_in) * (1.0 - sin_out * sin_out), 0.0));
+    let azimuth = clamp((dot(to_light, to_eye) - sin_in * sin_out) / max(across, 1e-6), -1.0, 1.0);
+    return Angles(sin_in, sin_out, select(0.0, azimuth, across > 1e-6));
+}
+
+fn cos_of(sine: f32) -> f32 {
+    return sqrt(max(1.0 - sine * sine, 0.0));
+}
+
+// A colour per channel, as a fibre wears it: absorption per radius, and the logit of the colour that is reached.
+struct Worn {
+    absorption: vec3<f32>,
+    logit: vec3<f32>,
+}
+
+fn worn_of(which: u32, colour: vec3<f32>) -> Worn {
+    let darkest = looks[which].rest.z;
+    let lightest = looks[which].rest.w;
+    let near = COLOUR_NEAR * (lightest - darkest);
+    let c = clamp(colour, vec3(darkest + near), vec3(lightest - near));
+    let u = log((c - darkest) / (lightest - c));
+    let f = looks[which].colouring;
+    let powers = f.x + u * (f.y + u * (f.z + u * (f.w + u * looks[which].colouring_last.x)));
+    return Worn(exp(clamp(powers, vec3(LEAST_LOG_ABSORPTION), vec3(MOST_LOG_ABSORPTION))), log(c / (1.0 - c)));
+}
+
+// N of each lobe, 1/rad.
+fn around_hair(which: u32, cos_azimuth: f32) -> vec4<f32> {
+    let surface = looks[which].surface;
+    let inner = looks[which].inner;
+    let glint = looks[which].glint;
+    let u = cos_azimuth;
+    let half_way = sqrt(max(0.5 * (1.0 + u), 0.0));
+    let lost = 1.0 - half_way;
+    let lost2 = lost * lost;
+    let mirrored = surface.y * half_way * (surface.x + (1.0 - surface.x) * lost2 * lost2 * lost);
+    let through = surface.w * exp(-surface.z * max(1.0 + u, 0.0));
+    let sine = sqrt(max(1.0 - u * u, 0.0));
+    let along = u * glint.x - 1.0;
+    let across = sine * glint.y;
+    let glints = exp(inner.w * min(along + across, 0.0)) + exp(inner.w * min(along - across, 0.0));
+    let medulla = glint.z + u * (glint.w + u * looks[which].rest.x);
+    return vec4(mirrored, through, inner.x * half_way + inner.y + inner.z * glints, max(medulla, 0.0));
+}
+
+// D of a lobe at an inclination.
+fn lobe_scale(lobe_even: vec4<f32>, lobe_odd: vec4<f32>, last: vec4<f32>, sine: f32, cosine: f32) -> f32 {
+    let per = 1.0 / (cosine + last.y);
+    let q = last.y * per;
+    let even = lobe_even.x + q * (lobe_even.y + q * (lobe_even.z + q * lobe_even.w)) + cosine * lobe_odd.x;
+    let odd = lobe_odd.y + q * (lobe_odd.z + q * lobe_odd.w) + cosine * last.x;
+    return (even + sine * odd) * per;
+}
+
+// 1/cos θ_t: by how much longer the way through is on a slant.
+fn crossing(which: u32, sine: f32) -> f32 {
+    return 1.0 / sqrt(max(1.0 - sine * sine * looks[which].rest.y, 0.01));
+}
+
+// S, 1/sr, per channel.
+fn fibre_scatter(which: u32, angles: Angles, absorption: vec3<f32>) -> vec3<f32> {
+    let si = angles.sin_in;
+    let so = angles.sin_out;
+    let ci = cos_of(si);
+    let co = cos_of(so);
+    let cos_sum = ci * co - si * so;
+    let sin_sum = si * co + ci * so;
+    let level = sqrt(ci * co);
+    let around = around_hair(which, angles.cos_azimuth);
+    let way = 0.5 * (crossing(which, si) + crossing(which, so));
+    var sum = vec3(0.0);
+    for (var i = 0u; i < 4u; i++) {
+        let even = looks[which].lobes[i].even;
+        let odd = looks[which].lobes[i].odd;
+        let last = looks[which].lobes[i].last;
+        let tilt = last.z * level;
+        let kernel = exp(last.w * min(cos_sum - 1.0 + tilt * (sin_sum - 0.5 * tilt), 0.0));
+        let scale = lobe_scale(even, odd, last, si, ci) * lobe_scale(even, odd, last, so, co);
+        let of = around[i] * scale * kernel;
+        if i == 0u {
+            sum += vec3(of);
+        } else {
+            sum += of * exp(-absorption * (looks[which].paths[i] * way));
+        }
+    }
+    return sum;
+}
+
+// Where a hair stands in a coat, and what lights it.
+struct Place {
+    // Hair area above per skin area.
+    above: f32,
+    // Optical depth towards the light.
+    depth: f32,
+    light_eye: f32,
+    hair_normal: f32,
+    eye_normal: f32,
+    light_normal: f32,
+}
+
+// The value for colours of these logits, e^most at most.
+fn of_colour(cubic: vec4<f32>, logit: vec3<f32>, most: f32) -> vec3<f32> {
+    return exp(min(cubic.x + logit * (cubic.y + logit * (cubic.z + logit * cubic.w)), vec3(most)));
+}
+
+// ln of what a hair sends towards the eye per irradiance, of light scattered twice or more: a cubic in the colour's logit.
+fn law_light(which: u32, place: Place, angles: Angles) -> vec4<f32> {
+    let x = sqrt(clamp(place.above, 1e-4, DEEPEST_LAW));
+    let p = angles.sin_in;
+    let q = angles.sin_out;
+    let k = place.light_eye - p * q;
+    let ct = place.hair_normal;
+    let cv = clamp(place.eye_normal, LOWEST_EYE, 1.0);
+    let cl = clamp(place.light_normal, LOWEST_LIGHT, 1.0);
+    let across = place.depth * cl / max(place.above, 1e-4);
+    let slant = clamp(log(max(across, 1e-3)), SLANT_LEAST, SLANT_MOST) - log(cl);
+    let pq = p * q;
+    let qq = q * q;
+    let x2 = x * x;
+    let slanted = slant * cl;
+    var sum = looks[which].light[0];
+    sum += looks[which].light[1] * x;
+    sum += looks[which].light[2] * cl;
+    sum += looks[which].light[3] * x2;
+    sum += looks[which].light[4] * (x2 * slant);
+    sum += looks[which].light[5] * slanted;
+    sum += looks[which].light[6] * pq;
+    sum += looks[which].light[7] * (x * slant);
+    sum += looks[which].light[8] * (slant * cv);
+    sum += looks[which].light[9] * (slanted * cl);
+    sum += looks[which].light[10] * (x2 * x);
+    sum += looks[which].light[11] * (slant * qq);
+    sum += looks[which].light[12] * k;
+    sum += looks[which].light[13] * (x * slant * slanted);
+    sum += looks[which].light[14] * (ct * ct);
+    sum += looks[which].light[15] * (x * q * ct);
+    sum += looks[which].light[16] * (pq * pq);
+    sum += looks[which].light[17] * (qq * ct * cl);
+    sum += looks[which].light[18] * (p * p);
+    sum += looks[which].light[19] * (x2 * slant * slant);
+    sum += looks[which].light[20] * (cl * cl);
+    sum += looks[which].light[21] * (q * ct * cl);
+    return sum;
+}
+
+// ln of what a hair sends towards the eye per radiance of the sky, of all its light.
+fn law_sky(which: u32, above: f32, eye_hair: f32, hair_normal: f32, eye_normal: f32) -> vec4<f32> {
+    let x = sqrt(clamp(above, 1e-4, DEEPEST_LAW));
+    let q = eye_hair;
+    let ct = hair_normal;
+    let cv = clamp(eye_normal, LOWEST_EYE, 1.0);
+    let x2 = x * x;
+    let qc = q * ct;
+    let cc = ct * cv;
+    var sum = looks[which].sky[0];
+    sum += looks[which].sky[1] * x;
+    sum += looks[which].sky[2] * qc;
+    sum += looks[which].sky[3] * x2;
+    sum += looks[which].sky[4] * cv;
+    sum += looks[which].sky[5] * ct;
+    sum += looks[which].sky[6] * (x2 * x * ct);
+    sum += looks[which].sky[7] * (cc * cv);
+    sum += looks[which].sky[8] * (x * ct * ct);
+    sum += looks[which].sky[9] * (x * q * q * q);
+    sum += looks[which].sky[10] * (x * qc * cv);
+    sum += looks[which].sky[11] * cc;
+    return sum;
+}
+
+// Optical depth that light and eye share, per hair area per volume and diameter, by the azimuth between them.
+fn hot_spot(cos_azimuth: f32) -> f32 {
+    let half_sine = sqrt(max(0.5 * (1.0 - cos_azimuth), 0.0));
+    return 1.0 / (0.18 + half_sine * (0.735 + half_sine * 20.7));
+}
+
+// What is left of scattered light where more lies before the light than in any slab.
+fn beyond(place: Place) -> f32 {
+    let level = max(place.light_normal, LOWEST_LIGHT);
+    return exp(-FADING * max(place.depth - max(place.above, LEAST_ABOVE) * MOST_SLANT / level, 0.0));
+}
+
+// Radiance towards the eye per irradiance of one light; `crowding` is hair area per volume times diameter.
+fn lit(which: u32, angles: Angles, place: Place, worn: Worn, crowding: f32) -> vec3<f32> {
+    let shared_depth = min(crowding * hot_spot(angles.cos_azimuth), place.depth);
+    let arriving = cos_of(angles.sin_in) * exp(shared_depth - place.depth);
+    let multiple = of_colour(law_light(which, place, angles), worn.logit, BRIGHTEST) * beyond(place);
+    return fibre_scatter(which, angles, worn.absorption) * arriving + multiple;
+}
+
+// Radiance towards the eye per radiance of a sky that is everywhere the same.
+fn lit_by_sky(which: u32, above: f32, eye_hair: f32, hair_normal: f32, eye_normal: f32, worn: Worn) -> vec3<f32> {
+    return of_colour(law_sky(which, above, eye_hair, hair_normal, eye_normal), worn.logit, 0.0);
+}
