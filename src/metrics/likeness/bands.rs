@@ -44,8 +44,8 @@ impl Bands {
 /// over w pixels is to weigh with a Gaussian of the variance that a box of w has, w²/12, of which a pixel brings the box of 1.
 fn variances(picture: &LinearImage, full: &[f32]) -> [f64; 3] {
     let luminance: Vec<f32> = picture.colour.iter().map(|c| c.dot(LUMA)).collect();
-    let smoothed = [1.0_f32, 2.0, 4.0, 8.0]
-        .map(|w| smooth::gaussian(&luminance, full, picture.width, (w * w - 1.0) / 12.0));
+    let smoothed =
+        [1.0_f32, 2.0, 4.0, 8.0].map(|w| smooth::gaussian(&luminance, full, picture.width, (w * w - 1.0) / 12.0));
     let within: Vec<usize> = (0..full.len()).filter(|&i| full[i] > 0.0).collect();
     std::array::from_fn(|band| {
         let difference = |&i: &usize| f64::from(smoothed[band][i] - smoothed[band + 1][i]);
