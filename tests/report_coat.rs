@@ -104,9 +104,7 @@ fn report(output: &Path, more: &[&str]) -> Command {
     let mut command = Command::new(furrier_path());
     command.args(["-q", "report", "coat", "sample:sphere", "--size", "40x40", "--distances", "1:2,3:1"]);
     command.args(["--lights", "studio,rim", "--texture-size", "64", "--layers", "6", "--device", "cpu"]);
-    for setting in ["guard.density_per_cm2=4", "undercoat.density_per_cm2=400"] {
-        command.args(["--set", setting]);
-    }
+    command.args(["--preset", "mink"]).args(crate::sweeps::SPARSE);
     command.args(more).arg("-o").arg(output);
     command
 }
