@@ -18,7 +18,7 @@ fn picture(size: [usize; 2], light: impl Fn(usize, usize) -> f32, alpha: impl Fn
 }
 
 /// A striped ball of radius 20 in the middle of 64 × 56 pixels; its border is a pixel wide.
-fn ball(shift: usize) -> LinearImage {
+pub fn ball(shift: usize) -> LinearImage {
     let away = |x: usize, y: usize| (x as f32 - 31.5 - shift as f32).hypot(y as f32 - 27.5);
     picture(
         [64, 56],
@@ -27,13 +27,15 @@ fn ball(shift: usize) -> LinearImage {
     )
 }
 
-fn with(change: impl Fn(Vec3) -> Vec3) -> LinearImage {
+/// The ball with its light changed.
+pub fn with(change: impl Fn(Vec3) -> Vec3) -> LinearImage {
     let mut changed = ball(0);
     changed.colour.iter_mut().for_each(|c| *c = change(*c));
     changed
 }
 
-fn judged(coat: &LinearImage) -> Judged {
+/// A coat's picture against the ball.
+pub fn judged(coat: &LinearImage) -> Judged {
     judge(&ball(0), coat, 8.0).unwrap()
 }
 
@@ -63,28 +65,6 @@ fn pictures_are_exposed_for_the_fur_and_stand_before_grey() {
     let dim = judged(&with(|c| c * 1.1)).likeness;
     assert!((bright.flip - dim.flip).abs() < 1e-3 && (bright.relmse - dim.relmse).abs() < 1e-6);
     assert_eq!(exposure(&with(|_| Vec3::ZERO)).unwrap_err().kind, furrier::error::Kind::Usage);
-}
-
-#[test]
-fn planted_faults_are_seen_by_what_they_concern() {
-    let brighter = judged(&with(|c| c * 1.1)).likeness;
-    assert!((brighter.bias - 0.1).abs() < 1e-5 && brighter.flip > 0.01 && brighter.coverage == 0.0, "{brighter:?}");
-    let redder = judged(&with(|c| c * Vec3::new(1.2, 1.0, 0.9))).likeness.bias_rgb;
-    let errors = [0.2, 0.0, -0.1].map(|expected: f64| expected).into_iter().zip(redder).map(|(e, b)| (e - b).abs());
-    assert!(errors.fold(0.0, f64::max) < 1e-5, "{redder:?}");
-    let shifted = judged(&ball(3)).likeness;
-    let edge = shifted.fringe.unwrap();
-    assert!(shifted.flip > 0.1 && edge.flip > 0.1 && shifted.relmse > 0.05 && shifted.bias.abs() < 0.05, "{shifted:?}");
-    // Hair that is missing at the border and nowhere else: light goes with it, so that what is left is as bright.
-    let mut bare = ball(0);
-    for i in fringe::band(&ball(0), 8.0) {
-        bare.alpha[i] *= 0.5;
-        bare.colour[i] *= 0.5;
-    }
-    let bare = judged(&bare).likeness;
-    let edge = bare.fringe.unwrap();
-    assert!(edge.coverage < -20.0 && bare.coverage > edge.coverage && bare.coverage < -5.0, "{bare:?}");
-    assert!(edge.flip > bare.flip && bare.bias.abs() < 0.05, "{bare:?}");
 }
 
 #[test]

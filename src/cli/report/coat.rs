@@ -135,6 +135,7 @@ impl Coat {
             Ok((report, adapter))
         })?;
         progress.finish();
+        report.notes.iter().for_each(|note| console.warning(note));
         let all = self.json(&report, &fur, size, &adapter);
         let title = format!("{}, {}, {} × {}, coat by {adapter}", self.input, self.preset, size[0], size[1]);
         let files = [

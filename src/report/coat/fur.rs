@@ -48,6 +48,8 @@ pub struct Painter<'a> {
     fur: &'a Fur,
     light: &'a Light,
     prepared: Option<Prepared<'a>>,
+    /// What a person should know of the drawing, one sentence each.
+    pub notes: Vec<String>,
 }
 
 impl Fur {
@@ -108,7 +110,7 @@ impl Fur {
 impl<'a> Painter<'a> {
     /// Of `fur` in `light`.
     pub fn new(fur: &'a Fur, light: &'a Light) -> Self {
-        Self { fur, light, prepared: None }
+        Self { fur, light, prepared: None, notes: Vec::new() }
     }
 
     /// The picture by `final`, and whether it had to be drawn; `tell` is called where it is.
@@ -131,6 +133,7 @@ impl<'a> Painter<'a> {
             }
         };
         let drawn = device::draw(&fur.device, self.prepared.insert(prepared), camera)?;
+        self.notes.extend(drawn.notes);
         let cost = Cost { ms: start.elapsed().as_secs_f64() * 1e3, triangles: None };
         let drawing = Drawing { picture: LinearImage::from(&drawn.picture.film), cost };
         keep.put(Of::Render, key, &drawing)?;

@@ -100,6 +100,8 @@ pub struct Report {
     pub pictures: Vec<Picture>,
     /// In a few numbers.
     pub summary: Summary,
+    /// What a person should know of the drawing, each once.
+    pub notes: Vec<String>,
     /// Renders and coats that had to be drawn; the others were kept.
     pub drawn: Drawn,
     /// Per light and distance three rows, render, coat and FLIP, a column per view.
@@ -172,8 +174,8 @@ pub fn look(
     tell: &mut dyn FnMut(&str),
 ) -> Result<Report> {
     let most = options.distances.iter().map(|distance| distance.views).max().unwrap_or(0);
-    let mut drawn = Drawn::default();
-    let floors = floors(options, fur, keep, &mut drawn, tell)?;
+    let (mut drawn, mut notes) = (Drawn::default(), Vec::new());
+    let floors = floors(options, fur, keep, (&mut drawn, &mut notes), tell)?;
     // A place per light, distance and view, in the report's order.
     let mut found: Vec<Vec<Vec<(Picture, Column)>>> =
         options.lights.iter().map(|_| options.distances.iter().map(|_| Vec::new()).collect()).collect();
@@ -220,6 +222,7 @@ pub fn look(
                 };
                 of_distance.push((picture, column));
             }
+            notes.extend(painter.notes);
         }
     }
     let (mut pictures, mut groups) = (Vec::new(), Vec::new());
@@ -229,7 +232,9 @@ pub fn look(
         groups.push(columns);
     }
     keep.tidy();
-    Ok(Report { summary: summarise(&pictures), pictures, drawn, sheet: sheet::sheet(&groups) })
+    notes.sort();
+    notes.dedup();
+    Ok(Report { summary: summarise(&pictures), pictures, notes, drawn, sheet: sheet::sheet(&groups) })
 }
 
 /// Per distance, how far fur of another seed is off in the first view and light.
@@ -237,7 +242,7 @@ fn floors(
     options: &Options,
     fur: &Fur,
     keep: &mut Keep,
-    drawn: &mut Drawn,
+    (drawn, notes): (&mut Drawn, &mut Vec<String>),
     tell: &mut dyn FnMut(&str),
 ) -> Result<Vec<Floor>> {
     let most = options.distances.iter().map(|distance| distance.views).max().unwrap_or(0);
@@ -253,7 +258,9 @@ fn floors(
         let judged = judge(fur, &camera, [&render, &again])?.likeness;
         Ok(Floor { flip: judged.flip, fringe_flip: judged.fringe.map(|fringe| fringe.flip) })
     };
-    options.distances.iter().map(&mut floor).collect()
+    let floors = options.distances.iter().map(&mut floor).collect();
+    notes.extend(own.notes.into_iter().chain(other.notes));
+    floors
 }
 
 /// Compares, with a fringe as wide as hair is long in the picture.
