@@ -17,6 +17,9 @@ pub const EXPOSED: f64 = 0.25;
 /// What is behind the fur in both pictures, linear: mid-grey.
 pub const BEHIND: f32 = 0.18;
 
+/// A render's light below this counts as this, so that what is over it is a number.
+const DARKEST: f64 = 1e-9;
+
 /// How far a coat is off a render; `Serialize` gives the names that the report has.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Likeness {
@@ -112,7 +115,7 @@ fn counted(render: &LinearImage, coat: &LinearImage) -> Vec<usize> {
 
 /// `a` over `b`, less 1; 0 where both are black.
 fn excess(a: f32, b: f32) -> f64 {
-    if a == b { 0.0 } else { f64::from(a) / f64::from(b).max(f64::MIN_POSITIVE) - 1.0 }
+    if a == b { 0.0 } else { f64::from(a) / f64::from(b).max(DARKEST) - 1.0 }
 }
 
 /// Mean light of what is drawn, as if it covered its pixels: light over alpha.
