@@ -14,7 +14,7 @@ pub enum Kind {
     Output,
     /// No graphics adapter, or it failed.
     Device,
-    /// A comparison exceeded its limit (`compare`).
+    /// A comparison exceeded its limit (`compare`, `report coat`).
     Difference,
 }
 

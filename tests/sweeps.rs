@@ -72,7 +72,7 @@ fn a_plot_shows_every_point_and_is_well_formed() {
 }
 
 /// Little hair in large clumps: quick to draw.
-const SPARSE: [&str; 6] = [
+pub const SPARSE: [&str; 6] = [
     "--set",
     "guard.density_per_cm2=4",
     "--set",

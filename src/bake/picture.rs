@@ -135,6 +135,11 @@ impl Grown {
         self.groomed.mesh().origin_m
     }
 
+    /// Length of the preset's guard hair, m.
+    pub fn hair_m(&self) -> f32 {
+        self.guard.1.length_m
+    }
+
     /// The guard hairs, to be written to a file; `name` is what they are called there.
     pub fn export<'a>(&'a self, name: &'a str) -> Export<'a> {
         Export { strands: &self.guard.0, origin_m: self.origin_m(), metres_per_unit: self.metres_per_unit, name }

@@ -98,7 +98,7 @@ impl UnitName {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Layout {
+pub(super) enum Layout {
     Lapped,
     Atlas,
     Uv,

@@ -104,7 +104,7 @@ fn viewpoint(text: &str) -> Result<Viewpoint> {
 }
 
 /// Reads `WxH`.
-fn size(text: &str) -> Result<[u32; 2]> {
+pub(super) fn size(text: &str) -> Result<[u32; 2]> {
     let pair = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     pair.filter(|pair| pair.iter().all(|n| (1..=16_384).contains(n))).ok_or_else(|| {
         Error::usage("the size cannot be read")

@@ -1,5 +1,7 @@
-//! Floor 9: error against time. A sweep draws one scene in many ways and says what each costs and how far off it is.
+//! Floor 9: error against time. A sweep draws one scene in many ways and says what each costs and how far off it is; a coat is
+//! looked at from many sides beside the fur that it stands for ([`coat`]).
 
+pub mod coat;
 pub mod plot;
 pub mod render;
 pub mod table;

@@ -43,11 +43,52 @@ impl Axis {
     }
 }
 
-/// The plot.
+/// One mark on the plot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dot {
+    /// What it belongs to: dots of a group have a colour.
+    pub group: String,
+    /// Whether only its outline is drawn.
+    pub open: bool,
+    /// Stands beside it; it is then a black diamond of no group.
+    pub name: Option<&'static str>,
+    /// What it says when pointed at.
+    pub label: String,
+    /// Time, ms.
+    pub ms: f64,
+    /// Error.
+    pub error: f64,
+    /// Whether nothing is quicker and closer.
+    pub pareto: bool,
+}
+
+/// What the legend says of a sweep.
+const OF_SWEEP: [&str; 3] =
+    ["open: changed from preview", "full: changed from final", "dashed: nothing is quicker and closer"];
+
+/// The plot of a sweep.
 pub fn svg(title: &str, error: &str, points: &[Point]) -> String {
+    let dot = |point: &Point| {
+        let (of, control) = point.sweep.split_once(": ").unwrap_or(("", &point.sweep));
+        Dot {
+            group: control.to_owned(),
+            // Changes to the preview are open, those to the final full.
+            open: of == "preview",
+            name: point.defaults,
+            label: format!("{} = {}: {:.0} ms, FLIP {:.4}", point.sweep, point.value, point.ms, point.flip),
+            ms: point.ms,
+            error: point.flip,
+            pareto: point.pareto,
+        }
+    };
+    draw([title, error], &points.iter().map(dot).collect::<Vec<_>>(), &OF_SWEEP)
+}
+
+/// A plot of dots, with its title and what its errors are; `notes` stand under the legend.
+pub fn draw([title, error]: [&str; 2], dots: &[Dot], notes: &[&str]) -> String {
     let [left, top, right, bottom] = FRAME;
-    let x = Axis::new(points.iter().map(|p| p.ms), [left, right]);
-    let y = Axis::new(points.iter().map(|p| p.flip), [bottom, top]);
+    let x = Axis::new(dots.iter().map(|p| p.ms), [left, right]);
+    let y = Axis::new(dots.iter().map(|p| p.error), [bottom, top]);
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" font-size=\"12\">\n\
          <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n\
@@ -57,47 +98,43 @@ pub fn svg(title: &str, error: &str, points: &[Point]) -> String {
         escaped(title)
     );
     axes(&mut out, &x, &y, error);
-    let mut front: Vec<&Point> = points.iter().filter(|p| p.pareto).collect();
+    let mut front: Vec<&Dot> = dots.iter().filter(|p| p.pareto).collect();
     front.sort_by(|a, b| a.ms.total_cmp(&b.ms));
-    let line: Vec<String> = front.iter().map(|p| format!("{:.1},{:.1}", x.place(p.ms), y.place(p.flip))).collect();
+    let line: Vec<String> = front.iter().map(|p| format!("{:.1},{:.1}", x.place(p.ms), y.place(p.error))).collect();
     line_out(&mut out, &line);
-    let mut controls: Vec<&str> = Vec::new();
-    for point in points {
-        let (px, py) = (x.place(point.ms), y.place(point.flip));
-        let label = format!("{} = {}: {:.0} ms, FLIP {:.4}", point.sweep, point.value, point.ms, point.flip);
-        if let Some(name) = point.defaults {
+    let mut groups: Vec<&str> = Vec::new();
+    for dot in dots {
+        let (px, py) = (x.place(dot.ms), y.place(dot.error));
+        let label = escaped(&dot.label);
+        if let Some(name) = dot.name {
             push(
                 &mut out,
                 format_args!(
-                    "<path d=\"M{px:.1} {:.1}l7 7 -7 7 -7 -7z\" fill=\"black\"><title>{}</title></path>\n\
+                    "<path d=\"M{px:.1} {:.1}l7 7 -7 7 -7 -7z\" fill=\"black\"><title>{label}</title></path>\n\
                  <text x=\"{:.1}\" y=\"{:.1}\" font-weight=\"bold\">{name}</text>\n",
                     py - 7.0,
-                    escaped(&label),
                     px + 10.0,
                     py - 6.0
                 ),
             );
             continue;
         }
-        let (of, control) = point.sweep.split_once(": ").unwrap_or(("", &point.sweep));
-        let index = controls.iter().position(|&c| c == control).unwrap_or_else(|| {
-            controls.push(control);
-            controls.len() - 1
+        let index = groups.iter().position(|&group| group == dot.group).unwrap_or_else(|| {
+            groups.push(&dot.group);
+            groups.len() - 1
         });
         let colour = COLOURS[index % COLOURS.len()];
-        // Changes to the preview are open, those to the final full.
-        let fill = if of == "preview" { "white" } else { colour };
-        let width = if point.pareto { 2.5 } else { 1.2 };
+        let fill = if dot.open { "white" } else { colour };
+        let width = if dot.pareto { 2.5 } else { 1.2 };
         push(
             &mut out,
             format_args!(
                 "<circle cx=\"{px:.1}\" cy=\"{py:.1}\" r=\"4\" fill=\"{fill}\" stroke=\"{colour}\" \
-             stroke-width=\"{width}\"><title>{}</title></circle>\n",
-                escaped(&label)
+             stroke-width=\"{width}\"><title>{label}</title></circle>\n"
             ),
         );
     }
-    legend(&mut out, &controls);
+    legend(&mut out, &groups, notes);
     out.push_str("</svg>\n");
     out
 }
@@ -158,10 +195,10 @@ fn axes(out: &mut String, x: &Axis, y: &Axis, error: &str) {
     );
 }
 
-fn legend(out: &mut String, controls: &[&str]) {
+fn legend(out: &mut String, groups: &[&str], notes: &[&str]) {
     let x = FRAME[2] + 24.0;
     let mut y = FRAME[1] + 8.0;
-    for (i, control) in controls.iter().enumerate() {
+    for (i, group) in groups.iter().enumerate() {
         let colour = COLOURS[i % COLOURS.len()];
         push(
             out,
@@ -169,12 +206,12 @@ fn legend(out: &mut String, controls: &[&str]) {
                 "<circle cx=\"{x}\" cy=\"{}\" r=\"4\" fill=\"{colour}\"/><text x=\"{}\" y=\"{y}\">{}</text>\n",
                 y - 4.0,
                 x + 12.0,
-                escaped(control)
+                escaped(group)
             ),
         );
         y += 20.0;
     }
-    for note in ["open: changed from preview", "full: changed from final", "dashed: nothing is quicker and closer"] {
+    for note in notes {
         y += 18.0;
         push(out, format_args!("<text x=\"{x}\" y=\"{y}\" fill=\"#555555\">{note}</text>\n"));
     }

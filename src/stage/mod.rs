@@ -12,6 +12,7 @@ pub mod light;
 pub mod options;
 pub mod png;
 pub mod projection;
+pub mod rig;
 pub mod tone;
 
 use crate::data::subject::Named;

@@ -2,6 +2,7 @@
 
 pub mod bald;
 pub mod chart;
+pub mod sitting;
 pub mod stage;
 pub mod subject;
 
@@ -16,7 +17,7 @@ use crate::math::{DVec3, Vec3};
 use crate::metrics::timing::{Recorder, Report};
 use crate::runtime::gpu::{Prepared, Renderer};
 use crate::runtime::{Frame, Picture, Show};
-use crate::stage::camera::{Orbit, Viewpoint, depth_range_m};
+use crate::stage::camera::{Orbit, Viewpoint};
 use crate::stage::file::Format;
 use crate::stage::light::Lit;
 use crate::stage::{exr, options, png, tone};
@@ -241,7 +242,6 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
     for viewpoint in viewpoints {
         let start = Instant::now();
         let camera = viewpoint.camera(&subject, stage.aspect())?;
-        let [near_m, far_m] = depth_range_m(&camera, &points_m, origin_m);
         let lit = if let Some(lit) = &still {
             lit.clone()
         } else if charted {
@@ -252,13 +252,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
         } else {
             stage.lit(&subject, &camera)?
         };
-        let view = Frame {
-            clip_from_world: camera.clip_from_world(origin_m, stage.aspect(), near_m, far_m).as_mat4(),
-            eye: (DVec3::from(camera.eye) - origin_m).as_vec3().extend(1.0),
-            size: stage.size,
-            lights: lit.lights,
-            ambient: lit.ambient,
-        };
+        let view = sitting::frame(&camera, origin_m, &points_m, stage.size, lit);
         recorder.row("draw: camera and light", ms_since(start), 0);
         let mut picture = draw(&mut prepared, &view, show, &mut recorder)?;
         if let Some(over_skin) = &mut over_skin {

@@ -1,6 +1,7 @@
 //! Tests of the tests: every comparison must catch a planted fault.
 
 mod formulas;
+mod likeness;
 mod product;
 
 use crate::architecture::{breaches, median_lines, too_long};

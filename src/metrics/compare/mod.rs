@@ -57,6 +57,14 @@ pub struct Difference {
 /// # Errors
 /// [`crate::error::Kind::Input`] where the sizes differ, a picture is empty, or a value is not a finite number.
 pub fn compare(reference: &LinearImage, other: &LinearImage) -> Result<Difference> {
+    compare_mapped(reference, other).map(|(difference, _)| difference)
+}
+
+/// [`compare`], and FLIP pixel by pixel.
+///
+/// # Errors
+/// As [`compare`].
+pub fn compare_mapped(reference: &LinearImage, other: &LinearImage) -> Result<(Difference, Vec<f32>)> {
     let size = |light: &LinearImage| format!("{} x {}", light.width, light.height);
     if (reference.width, reference.height) != (other.width, other.height) || reference.colour.is_empty() {
         return Err(Error::input("the pictures cannot be laid over each other")
@@ -75,9 +83,10 @@ pub fn compare(reference: &LinearImage, other: &LinearImage) -> Result<Differenc
     let counted: Vec<usize> =
         (0..reference.colour.len()).filter(|&i| reference.alpha[i] > 0.0 || other.alpha[i] > 0.0).collect();
     let coded = [reference, other].map(coded);
-    let (flip, flip_p95) = flip(&coded, reference.width, reference.height, &counted);
+    let map = flip_map(&coded, reference.width, reference.height);
+    let (flip, flip_p95) = flip(&map, &counted);
     let luma = |picture: &[Vec3]| picture.iter().map(|c| c.dot(LUMA)).collect::<Vec<f32>>();
-    Ok(Difference {
+    let difference = Difference {
         flip,
         flip_p95,
         rel_mse: rel_mse(reference, other, &counted),
@@ -85,13 +94,14 @@ pub fn compare(reference: &LinearImage, other: &LinearImage) -> Result<Differenc
         ssim: ssim::mean(&luma(&coded[0]), &luma(&coded[1]), reference.width, reference.height),
         bias: bias(reference, other),
         coverage: [reference, other].map(|l| mean(l.alpha.iter().map(|&a| f64::from(a)))),
-    })
+    };
+    Ok((difference, map))
 }
 
 /// Rec. 709 weights.
-const LUMA: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
+pub(super) const LUMA: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
-fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+pub(super) fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     let count = values.len().max(1);
     values.sum::<f64>() / count as f64
 }
@@ -101,19 +111,22 @@ fn coded(light: &LinearImage) -> Vec<Vec3> {
     light.colour.iter().map(|c| c.map(|v| srgb_from_linear(v.clamp(0.0, 1.0)))).collect()
 }
 
-fn flip(coded: &[Vec<Vec3>; 2], width: usize, height: usize, counted: &[usize]) -> (f64, f64) {
+fn flip_map(coded: &[Vec<Vec3>; 2], width: usize, height: usize) -> Vec<f32> {
     let image = |picture: &[Vec3]| {
         let bytes: Vec<u8> = picture.iter().flat_map(|c| c.to_array().map(|v| (v * 255.0 + 0.5) as u8)).collect();
         nv_flip::FlipImageRgb8::with_data(width as u32, height as u32, &bytes)
     };
-    let map = nv_flip::flip(image(&coded[0]), image(&coded[1]), PIXELS_PER_DEGREE).to_vec();
+    nv_flip::flip(image(&coded[0]), image(&coded[1]), PIXELS_PER_DEGREE).to_vec()
+}
+
+fn flip(map: &[f32], counted: &[usize]) -> (f64, f64) {
     let mut errors: Vec<f32> = counted.iter().map(|&i| map[i]).collect();
     errors.sort_unstable_by(f32::total_cmp);
     let p95 = errors.get((errors.len() * 95).div_ceil(100).saturating_sub(1)).copied().unwrap_or(0.0);
     (mean(errors.iter().map(|&e| f64::from(e))), f64::from(p95))
 }
 
-fn rel_mse(reference: &LinearImage, other: &LinearImage, counted: &[usize]) -> f64 {
+pub(super) fn rel_mse(reference: &LinearImage, other: &LinearImage, counted: &[usize]) -> f64 {
     mean(counted.iter().map(|&i| {
         let (b, a) = (reference.colour[i].as_dvec3(), other.colour[i].as_dvec3());
         let ratio = (a - b) * (a - b) / (b * b + 0.01);

@@ -1,35 +1,20 @@
-//! `furrier report`.
+//! `furrier report render`.
 
-use super::bake::UnitName;
-use super::console::Console;
-use super::output;
-use super::stage::StageArgs;
+use super::checked_outputs;
 use crate::asset::write;
 use crate::bake::picture::{Grown, Only, PictureRequest};
-use crate::error::{Error, Result};
+use crate::cli::bake::UnitName;
+use crate::cli::console::Console;
+use crate::cli::output;
+use crate::cli::stage::StageArgs;
+use crate::error::Result;
 use crate::metrics::compare::load;
 use crate::preset::Preset;
 use crate::report::{plot, render, table};
 use crate::stage::file::Format;
 use crate::volume::scene::Lighting;
-use clap::{Args, Subcommand};
-use std::path::{Path, PathBuf};
-
-/// Sweep settings: error against time, as JSON, CSV and a plot
-#[derive(Debug, Args)]
-#[command(after_long_help = "\
-Examples:
-  furrier report render sample:hat -o hat.json --preset mink --size 256x256
-  furrier report render bunny.glb -o bunny.json --size 512x512 --repeats 3")]
-pub struct Report {
-    #[command(subcommand)]
-    what: What,
-}
-
-#[derive(Debug, Subcommand)]
-enum What {
-    Render(Render),
-}
+use clap::Args;
+use std::path::PathBuf;
 
 /// Draw a scene with every control of `render` changed in turn
 #[derive(Debug, Args)]
@@ -38,7 +23,7 @@ Example:
   furrier report render sample:hat -o hat.json --preset mink --size 256x256
 
 Beside hat.json stand hat.csv, hat.svg and hat.png, which is what the defaults of final draw. Errors are against the finest setting or --reference; times are of drawing alone.")]
-struct Render {
+pub struct Render {
     /// A glTF or OBJ file, or sample:NAME
     input: String,
     /// The report to write; a .csv, a .svg and a .png go beside it
@@ -66,30 +51,13 @@ struct Render {
     seed: u64,
 }
 
-impl Report {
+impl Render {
     /// Sweeps and writes.
     ///
     /// # Errors
     /// Where the input or an option cannot be used, or a file not written.
     pub fn run(self, console: &Console) -> Result<()> {
-        match self.what {
-            What::Render(render) => render.run(console),
-        }
-    }
-}
-
-impl Render {
-    fn run(self, console: &Console) -> Result<()> {
-        if self.output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("json")) {
-            return Err(Error::usage("the report's kind is unknown")
-                .with_field("--output")
-                .with_found(self.output.display())
-                .with_expected("a name that ends in .json"));
-        }
-        let [csv, svg, png] = ["csv", "svg", "png"].map(|kind| self.output.with_extension(kind));
-        for file in [&self.output, &csv, &svg, &png] {
-            output::check(file, &[Path::new(&self.input)])?;
-        }
+        let [csv, svg, png] = checked_outputs(&self.output, &self.input)?;
         let stage = self.stage.options()?;
         let size = stage.size.map(|n| n as usize);
         let load_named = |path: &PathBuf| -> Result<_> { Ok((path.display().to_string(), load(path)?)) };
