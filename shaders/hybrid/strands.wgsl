@@ -5,7 +5,7 @@
 #import furrier::camera::view
 #import furrier::guard::{guard_ramp, root_of}
 #import furrier::fur_light::{slant_depth, terminator, above_both}
-#import furrier::law::{Place, angles_of, lit, lit_by_sky, worn_of}
+#import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, worn_of}
 #import furrier::mean_shadow::{mean_depths, tips_m}
 #import furrier::undercoat_light::key_depth
 
@@ -73,7 +73,7 @@ fn log_radiance_at(strand: Strand, first: u32, i: u32) -> vec3<f32> {
             depth = slant_depth(above, light.to_light, normal, lean);
         }
         let angles = angles_of(along, light.to_light, to_eye);
-        let place = Place(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, dot(light.to_light, normal));
+        let place = HairPlace(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, dot(light.to_light, normal));
         sum += light.irradiance * open * lit(0u, angles, place, worn, crowding);
     }
     return log(max(sum, vec3(1.1754944e-38)));

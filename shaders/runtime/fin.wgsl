@@ -2,7 +2,7 @@
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
 #import furrier::shading::above_horizon
-#import furrier::law::{Place, angles_of, lit, lit_by_sky, worn_of}
+#import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, worn_of}
 #import furrier::looks::layer_looks
 #import furrier::constants::{INVISIBLE, LEAST_CLEAR, LEAST_COSINE}
 #import furrier::coat::{CoatVertex, Paint, Root, root_of, depth_of_opacity, presence, closeness}
@@ -146,7 +146,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         let cos_light = dot(normal, light.to_light);
         let angles = angles_of(tangent, light.to_light, to_eye);
         let lateral = sqrt(max(0.0, 1.0 - angles.sin_in * angles.sin_in)) / max(abs(cos_light), LEAST_COSINE);
-        let here = Place(above, above * lateral, dot(light.to_light, to_eye), hair_normal, eye_normal, cos_light);
+        let here = HairPlace(above, above * lateral, dot(light.to_light, to_eye), hair_normal, eye_normal, cos_light);
         radiance += above_horizon(cos_light) * light.irradiance * lit(look, angles, here, worn, crowding);
     }
     return vec4(radiance * opacity, opacity);

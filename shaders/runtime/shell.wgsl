@@ -3,7 +3,7 @@
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
 #import furrier::shading::above_horizon
-#import furrier::law::{Place, angles_of, lit, lit_by_sky, worn_of}
+#import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, worn_of}
 #import furrier::looks::layer_looks
 #import furrier::constants::{DEEPEST_HAIR, INVISIBLE, LEAST_CLEAR, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
 #import furrier::coat::{CoatVertex, Paint, Root, root_of, Filled, filled_slab, Frame, Medium, Footprint, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
@@ -266,7 +266,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         let light_normal = dot(normal, light.to_light);
         let depth = above * shadow_slant(at, light.to_light, medium);
         let angles = angles_of(tangent, light.to_light, to_eye);
-        let here = Place(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, light_normal);
+        let here = HairPlace(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, light_normal);
         radiance += above_horizon(light_normal) * light.irradiance * lit(look.look, angles, here, worn, look.crowding);
     }
     return vec4(radiance * opacity, opacity);

@@ -94,18 +94,18 @@ fn fibre_scatter(which: u32, angles: Angles, absorption: vec3<f32>) -> vec3<f32>
         let tilt = last.z * level;
         let kernel = exp(last.w * min(cos_sum - 1.0 + tilt * (sin_sum - 0.5 * tilt), 0.0));
         let scale = lobe_scale(even, odd, last, si, ci) * lobe_scale(even, odd, last, so, co);
-        let of = around[i] * scale * kernel;
+        let sent = around[i] * scale * kernel;
         if i == 0u {
-            sum += vec3(of);
+            sum += vec3(sent);
         } else {
-            sum += of * exp(-absorption * (looks[which].paths[i] * way));
+            sum += sent * exp(-absorption * (looks[which].paths[i] * way));
         }
     }
     return sum;
 }
 
 // Where a hair stands in a coat, and what lights it.
-struct Place {
+struct HairPlace {
     // Hair area above per skin area.
     above: f32,
     // Optical depth towards the light.
@@ -122,7 +122,7 @@ fn of_colour(cubic: vec4<f32>, logit: vec3<f32>, most: f32) -> vec3<f32> {
 }
 
 // ln of what a hair sends towards the eye per irradiance, of light scattered twice or more: a cubic in the colour's logit.
-fn law_light(which: u32, place: Place, angles: Angles) -> vec4<f32> {
+fn law_light(which: u32, place: HairPlace, angles: Angles) -> vec4<f32> {
     let x = sqrt(clamp(place.above, 1e-4, DEEPEST_LAW));
     let p = angles.sin_in;
     let q = angles.sin_out;
@@ -192,13 +192,13 @@ fn hot_spot(cos_azimuth: f32) -> f32 {
 }
 
 // What is left of scattered light where more lies before the light than in any slab.
-fn beyond(place: Place) -> f32 {
+fn beyond(place: HairPlace) -> f32 {
     let level = max(place.light_normal, LOWEST_LIGHT);
     return exp(-FADING * max(place.depth - max(place.above, LEAST_ABOVE) * MOST_SLANT / level, 0.0));
 }
 
 // Radiance towards the eye per irradiance of one light; `crowding` is hair area per volume times diameter.
-fn lit(which: u32, angles: Angles, place: Place, worn: Worn, crowding: f32) -> vec3<f32> {
+fn lit(which: u32, angles: Angles, place: HairPlace, worn: Worn, crowding: f32) -> vec3<f32> {
     let shared_depth = min(crowding * hot_spot(angles.cos_azimuth), place.depth);
     let arriving = cos_of(angles.sin_in) * exp(shared_depth - place.depth);
     let multiple = of_colour(law_light(which, place, angles), worn.logit, BRIGHTEST) * beyond(place);

@@ -7,7 +7,7 @@
 #import furrier::march::Step
 #import furrier::light::light_at
 #import furrier::fur_light::{slant_depth, terminator}
-#import furrier::law::{Place, angles_of, lit, lit_by_sky, worn_of}
+#import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, worn_of}
 
 // Bytes by level, then corner of sub-elements; of all prisms one after the other.
 @group(1) @binding(1) var<storage, read> shadow: array<u32>;
@@ -76,7 +76,7 @@ fn undercoat_light(taken: Step, origin_m: vec3<f32>, direction: vec3<f32>) -> Ap
             depth = slant_depth(above, light.to_light, normal, taken.hair);
         }
         let angles = angles_of(taken.hair, light.to_light, to_eye);
-        let place = Place(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, dot(light.to_light, normal));
+        let place = HairPlace(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, dot(light.to_light, normal));
         radiance += light.irradiance * open * lit(1u, angles, place, worn, scene.undercoat_crowding);
     }
     return Appearance(albedo, radiance);
