@@ -2,6 +2,7 @@
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
+#import furrier::shadow_map::key_share
 #import furrier::constants::{INVISIBLE, LEAST_CLEAR, LEAST_COSINE}
 #import furrier::coat::{CoatVertex, Paint, Root, root_of, depth_of_opacity, presence, closeness}
 
@@ -131,13 +132,14 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let hair = Hair(surface.rgb * tint.rgb, tangent, normal, -world_ray);
     let outside_depth = -log(max(medium.a, LEAST_CLEAR)) * present;
     var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
+    let root_m = in.position_m - (1.0 - in.uv.y) * in.offset_m;
     for (var i = 0u; i < view.light_count; i++) {
         let light = light_at(view.lights[i], in.position_m);
         let cos_light = dot(normal, light.to_light);
         let along_light = dot(tangent, light.to_light);
         let lateral = sqrt(max(0.0, 1.0 - along_light * along_light)) / max(abs(cos_light), LEAST_COSINE);
         let shadow = exp(-outside_depth * lateral);
-        radiance += above_horizon(cos_light) * light.irradiance
+        radiance += above_horizon(cos_light) * light.irradiance * key_share(i, root_m, in.position_m, normal, light.to_light)
             * scattered(hair, light.to_light, shadow, multiply_scattered(shadow, hair.albedo));
     }
     return vec4(radiance * opacity, opacity);

@@ -3,6 +3,7 @@
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
 #import furrier::shading::{Hair, scattered, above_horizon, multiply_scattered}
+#import furrier::shadow_map::key_share
 #import furrier::constants::{DEEPEST_HAIR, INVISIBLE, LEAST_CLEAR, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
 #import furrier::coat::{CoatVertex, Paint, Root, root_of, Filled, filled_slab, Frame, Medium, Footprint, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
     lateral, shadow_slant, depth_of_opacity, presence, path_through_slab, footprint, fetch, run_through_slab, gain, medium_of, fin_share, closeness}
@@ -252,11 +253,13 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let hair = Hair(surface.rgb * tint, tangent, normal, -world_ray);
     let outside_depth = min(-log(max(surface.a, LEAST_CLEAR)), DEEPEST_HAIR) * present;
     var radiance = hair.albedo * view.ambient * multiply_scattered(exp(-outside_depth), hair.albedo);
+    let root_m = in.position_m - in.offset_m * (f32(in.layer) / f32(tile.layers - 1u));
     for (var i = 0u; i < view.light_count; i++) {
         let light = light_at(view.lights[i], in.position_m);
         let shadow = exp(-outside_depth * shadow_slant(at, light.to_light, medium));
         let seen = above_horizon(dot(normal, light.to_light));
-        radiance += seen * light.irradiance * scattered(hair, light.to_light, shadow, multiply_scattered(shadow, hair.albedo));
+        let reaching = light.irradiance * key_share(i, root_m, in.position_m, normal, light.to_light);
+        radiance += seen * reaching * scattered(hair, light.to_light, shadow, multiply_scattered(shadow, hair.albedo));
     }
     return vec4(radiance * opacity, opacity);
 }

@@ -2,6 +2,7 @@
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
 #import furrier::shading::skin_radiance
+#import furrier::shadow_map::key_share
 #import furrier::constants::{FADE_BELOW, LEAST_CLEAR, LEAST_COSINE}
 #import furrier::coat::{hair_sampler, albedo_texture}
 
@@ -60,7 +61,8 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         // Upright hair of which 45 degrees is the stored case: tan θ.
         let slope = sqrt(max(0.0, 1.0 - cos_light * cos_light)) / max(abs(cos_light), LEAST_COSINE);
         let shadow = exp(-outside_depth * max(slope, 0.3));
-        radiance += light.irradiance * shadow * skin_radiance(albedo, normal, -world_ray, light.to_light, gloss);
+        let reaching = light.irradiance * key_share(i, in.position_m, in.position_m, turned, light.to_light);
+        radiance += reaching * shadow * skin_radiance(albedo, normal, -world_ray, light.to_light, gloss);
     }
     return vec4(radiance, 1.0);
 }

@@ -12,10 +12,11 @@ macro_rules! source {
 }
 
 /// Modules that others import, imported ones first.
-pub const SHARED: [Source; 5] = [
+pub const SHARED: [Source; 6] = [
     Source::constants(&CONSTANTS),
     source!("shared/light.wgsl"),
     source!("shared/view.wgsl"),
+    source!("shared/shadow_map.wgsl"),
     source!("shared/shading.wgsl"),
     source!("shared/coat.wgsl"),
 ];
@@ -25,6 +26,8 @@ pub const SKIN: Source = source!("runtime/skin.wgsl");
 pub const SHELL: Source = source!("runtime/shell.wgsl");
 /// Fins.
 pub const FIN: Source = source!("runtime/fin.wgsl");
+/// What hides the key light.
+pub const CASTER: Source = source!("runtime/caster.wgsl");
 /// Samples to pixels.
 pub const RESOLVE: Source = source!("runtime/resolve.wgsl");
 
@@ -41,7 +44,7 @@ pub const RESOLVED_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
 /// Layouts of what passes bind.
 pub struct Layouts {
-    /// Group 0: camera and lights.
+    /// Group 0: camera and lights, and the key light's shadow map.
     pub view: wgpu::BindGroupLayout,
     /// Group 1: a tile.
     pub tile: wgpu::BindGroupLayout,
@@ -67,11 +70,12 @@ impl Layouts {
             view_dimension,
             multisampled: false,
         };
-        let depths = BindingType::Texture {
+        let depths = |multisampled| BindingType::Texture {
             sample_type: TextureSampleType::Depth,
             view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: true,
+            multisampled,
         };
+        let comparison = BindingType::Sampler(SamplerBindingType::Comparison);
         let array = texture(true, wgpu::TextureViewDimension::D2Array);
         let group = |label, kinds: &[BindingType]| {
             let entries: Vec<_> = (0..)
@@ -87,12 +91,12 @@ impl Layouts {
                 .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
         };
         Self {
-            view: group("view", &[uniform]),
+            view: group("view", &[uniform, comparison, depths(false)]),
             tile: group("tile", &[uniform, storage, storage, sampler, array, array, array]),
             geometry: group("geometry", &[storage, storage, uniform, sampler, array, sampler, array]),
             material: group("material", &[sampler, array, sampler, array]),
             fin: group("fin", &[sampler, array, array]),
-            samples: group("samples", &[texture(false, wgpu::TextureViewDimension::D2), depths]),
+            samples: group("samples", &[texture(false, wgpu::TextureViewDimension::D2), depths(true)]),
         }
     }
 }
