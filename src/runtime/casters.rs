@@ -11,6 +11,9 @@ const SWELL: f32 = 0.5;
 /// is closed, a half for half a sphere, 1 for a plane.
 const SHEET: f64 = 0.25;
 
+/// Size of what counts as one place, over that of all.
+const WELD: f32 = 1.0 / 65536.0;
+
 /// A box along the axes, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
@@ -69,10 +72,12 @@ impl Casters {
             casters.add(skin);
         }
         let sheet = sheets(&casters.positions_m, &casters.triangles);
-        let turned = |[a, b, c]: [u32; 3]| [a, c, b];
-        let other_side: Vec<_> =
-            casters.triangles.iter().zip(&sheet).filter(|(_, sheet)| **sheet).map(|(t, _)| turned(*t)).collect();
-        casters.triangles.extend(other_side);
+        for t in sheet {
+            let [a, b, c] = casters.triangles[t];
+            casters.triangles.push([a, c, b]);
+            // Its near side is drawn too, and must not rise into its own hair.
+            [a, b, c].iter().for_each(|&v| casters.swell_m[v as usize] = Vec3::ZERO);
+        }
         let of_skins = |guest| {
             let skins = scene.skins.iter().filter(move |skin| skin.guest == guest);
             skins.flat_map(|skin| skin.triangles.iter().flatten().map(|&v| skin.positions_m[v as usize]))
@@ -101,14 +106,16 @@ impl Casters {
     }
 }
 
-/// Which triangles belong to a sheet, which has no far side that could cast its shadow. What hangs together by points that lie in
+/// The triangles that belong to a sheet, which has no far side that could cast its shadow. What hangs together by points that lie in
 /// one place is one surface.
-fn sheets(positions_m: &[Vec3], triangles: &[[u32; 3]]) -> Vec<bool> {
+fn sheets(positions_m: &[Vec3], triangles: &[[u32; 3]]) -> Vec<usize> {
+    let Some(Bounds { low, high }) = Bounds::of(positions_m.iter().copied()) else { return Vec::new() };
+    let per_cell = 1.0 / (WELD * (high - low).max_element()).max(f32::MIN_POSITIVE);
     let mut known = HashMap::with_capacity(positions_m.len());
     let mut parent: Vec<u32> = (0..positions_m.len() as u32).collect();
     for (v, p) in (0..).zip(positions_m) {
-        // Zero of either sign is one place.
-        parent[v as usize] = *known.entry((*p + Vec3::ZERO).to_array().map(f32::to_bits)).or_insert(v);
+        let cell = ((*p - low) * per_cell).round().as_ivec3();
+        parent[v as usize] = *known.entry(cell).or_insert(v);
     }
     for &[a, b, c] in triangles {
         for other in [b, c] {
@@ -124,7 +131,8 @@ fn sheets(positions_m: &[Vec3], triangles: &[[u32; 3]]) -> Vec<bool> {
         let (sum, size) = areas.entry(*of).or_default();
         (*sum, *size) = (*sum + area, *size + area.length());
     }
-    surface.iter().map(|of| areas.get(of).is_some_and(|(sum, size)| sum.length() > SHEET * size)).collect()
+    let is_sheet = |of: &u32| areas.get(of).is_some_and(|(sum, size)| sum.length() > SHEET * size);
+    (0..triangles.len()).filter(|&t| is_sheet(&surface[t])).collect()
 }
 
 /// The vertex that stands for all that hang together with `v`.

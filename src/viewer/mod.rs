@@ -303,7 +303,12 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
 }
 
 /// Draws one view. What it costs is in the rows that begin with `draw:`, to the last of it; what is in others is paid once.
-fn draw(prepared: &mut Prepared<'_>, view: &Frame, show: Show, recorder: &mut Recorder) -> Result<(Picture, KeyShadow)> {
+fn draw(
+    prepared: &mut Prepared<'_>,
+    view: &Frame,
+    show: Show,
+    recorder: &mut Recorder,
+) -> Result<(Picture, KeyShadow)> {
     let start = Instant::now();
     let drawn = prepared.draw(view, show)?;
     let mut on_device = 0.0;

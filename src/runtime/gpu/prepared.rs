@@ -2,8 +2,8 @@
 
 use super::layout::ViewUniform;
 use super::pipelines::DepthPipelines;
-use super::shadow_map::{GpuCasters, MAP_BYTES};
 use super::resources::{self, GpuFur, GpuSkin, Textures};
+use super::shadow_map::{GpuCasters, MAP_BYTES};
 use super::targets::Targets;
 use super::{Drawn, KeyShadow, PassCost, Renderer};
 use crate::error::{Error, Result};
