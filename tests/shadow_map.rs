@@ -188,7 +188,9 @@ fn a_box_sinks_into_fur_and_darkens_what_stands_beside_it() {
     for (i, (under, over)) in places(&frame, &bare).into_iter().zip(places(&frame, &with)).enumerate() {
         let (Some(under), Some(over)) = (under, over) else { continue };
         let grey = 0.5 * (0.05 + 3.0 / (std::f32::consts::PI * 2f32.sqrt()));
-        if over.z > high.z - 1e-4 {
+        if over.z > high.z - 1e-4 && over.x.abs().max(over.y.abs()) > 0.85 * half {
+            // Its edge has part of what lies behind.
+        } else if over.z > high.z - 1e-4 {
             // The lid is lit, and nothing but its own grey.
             let close = with.pixels[i][..3].iter().all(|c| (c - grey).abs() < 0.01 * grey);
             assert!(close, "{:?} for {grey}", with.pixels[i]);

@@ -7,7 +7,7 @@
 @group(0) @binding(2) var key_map: texture_depth_2d;
 
 // Cosine between normal and light from which on hair is compared where it is; at a right angle and beyond, at its root.
-const LIT: f32 = 0.25;
+const LIT: f32 = 0.5;
 // The same from which on what is compared is moved by all of the bias.
 const MOVED: f32 = 0.0625;
 
