@@ -13,8 +13,9 @@
 
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
-    @location(0) position_m: vec3<f32>,
-    @location(1) normal: vec3<f32>,
+    // Within the triangle, or a place beyond an outline would stand behind the body, in its shadow.
+    @location(0) @interpolate(perspective, centroid) position_m: vec3<f32>,
+    @location(1) @interpolate(perspective, centroid) normal: vec3<f32>,
     @location(2) colour: vec3<f32>,
     @location(3) uv: vec2<f32>,
     @location(4) coat_uv: vec2<f32>,
