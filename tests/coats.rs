@@ -250,6 +250,7 @@ impl Furred {
             tile: Some(0),
             coat_uv: self.uv.clone(),
             coat_density: vec![1.0; self.positions_m.len()],
+            hair_m: self.offsets_m.iter().zip(&self.normals).map(|(o, n)| o.dot(*n)).collect(),
             triangles: self.triangles.clone(),
             ..Default::default()
         };

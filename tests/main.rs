@@ -51,6 +51,7 @@ mod runtime;
 mod scenes;
 mod seams;
 mod shaders;
+mod shadow_map;
 mod shadows;
 mod silhouette;
 mod sphere;

@@ -82,7 +82,14 @@ fn above() -> Frame {
         [0.0, -1.0 / HALF, 0.0, 0.0],
         [0.0, 0.0, 0.5, 1.0],
     ]);
-    Frame { clip_from_world: across, eye: Vec3::Y.extend(0.0), size: [PIXELS; 2], lights: vec![], ambient: Vec3::ONE }
+    Frame {
+        clip_from_world: across,
+        eye: Vec3::Y.extend(0.0),
+        size: [PIXELS; 2],
+        lights: vec![],
+        ambient: Vec3::ONE,
+        shadow_map: false,
+    }
 }
 
 fn with_picture<T>(asset: &Asset, coat: &Coat, look: impl FnOnce(&mut furrier::runtime::gpu::Prepared<'_>) -> T) -> T {

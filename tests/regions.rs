@@ -74,6 +74,7 @@ fn view(edge_m: f32) -> Frame {
         size: [PIXELS; 2],
         lights: vec![],
         ambient: Vec3::ONE,
+        shadow_map: false,
     }
 }
 

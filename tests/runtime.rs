@@ -25,6 +25,7 @@ pub fn look(eye: Vec3, size: [u32; 2]) -> Frame {
             Directional { to_light: Vec3::new(-0.5, 0.7, 0.6).normalize(), irradiance: Vec3::splat(3.0) }.into(),
         ],
         ambient: Vec3::splat(0.5),
+        shadow_map: true,
     }
 }
 

@@ -8,7 +8,7 @@ use furrier::hybrid::gpu::layout::{
     BlocksUniform, KindUniform, LobeUniform, SceneUniform, ViewUniform as CameraUniform,
 };
 use furrier::runtime::gpu::layout::{CoatVertex, FinInstance, Mip, PaintUniform, SkinVertex, TileUniform, ViewUniform};
-use furrier::runtime::gpu::pipelines::{FIN, RESOLVE, SHARED, SHELL, SKIN};
+use furrier::runtime::gpu::pipelines::{CASTER, FIN, RESOLVE, SHARED, SHELL, SKIN};
 use naga::proc::Layouter;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, TypeInner};
@@ -49,11 +49,13 @@ fn kernel(source: Source) -> Module {
 
 #[test]
 fn every_shader_is_valid() {
-    for source in [SKIN, SHELL, FIN, RESOLVE] {
+    for source in [SKIN, SHELL, FIN, RESOLVE, CASTER] {
         let module = module(source);
         let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
         validator.validate(&module).unwrap_or_else(|error| panic!("{}: {error:?}", source.path));
-        for stage in ["vertex", "fragment"] {
+        // What casts a shadow leaves its depth alone.
+        let stages = if source.path == CASTER.path { &["vertex"][..] } else { &["vertex", "fragment"] };
+        for &stage in stages {
             assert!(module.entry_points.iter().any(|entry| entry.name == stage), "{}: {stage}", source.path);
         }
     }
@@ -72,7 +74,7 @@ fn every_kernel_is_valid() {
 #[test]
 fn every_shader_file_is_tested() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
-    let drawn = [SKIN, SHELL, FIN, RESOLVE];
+    let drawn = [SKIN, SHELL, FIN, RESOLVE, CASTER];
     let all = drawn.iter().chain(&SHARED).chain(&kernels::ALL).chain(&kernels::SHARED);
     let tested: Vec<_> = all.map(|source| source.path.to_owned()).collect();
     for kind in ["runtime", "hybrid", "shared"] {
@@ -92,7 +94,19 @@ fn structs_lie_as_in_rust() {
     let (shell, fin) = (module(SHELL), module(FIN));
     for (module, name, rust) in [
         (&shell, "Light", light()),
-        (&shell, "View", in_rust!(ViewUniform { clip_from_world, eye, ambient, light_count, lights })),
+        (
+            &shell,
+            "View",
+            in_rust!(ViewUniform {
+                clip_from_world,
+                eye,
+                ambient,
+                light_count,
+                lights,
+                shadow_from_world,
+                shadow_bias_m
+            }),
+        ),
         (&shell, "Tile", in_rust!(TileUniform { edge_m, height_m, size, layers, mips, tinted, medium_unit_per_m })),
         (&shell, "Mip", in_rust!(Mip { gains })),
         (&shell, "CoatVertex", in_rust!(CoatVertex { position_m, u, offset_m, v, normal, longest, axis, tint, root })),

@@ -108,6 +108,7 @@ fn frame(camera: &Camera) -> Frame {
         size: [PIXELS as u32; 2],
         lights: vec![],
         ambient: Vec3::ONE,
+        shadow_map: false,
     }
 }
 

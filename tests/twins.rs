@@ -64,6 +64,7 @@ pub fn oblique(direction: Vec3, edge_m: f32) -> Frame {
         size: [PIXELS; 2],
         lights: vec![],
         ambient: Vec3::ZERO,
+        shadow_map: false,
     }
 }
 

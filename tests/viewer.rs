@@ -146,13 +146,21 @@ fn a_sheet_holds_every_view() {
 fn a_report_says_what_was_drawn() {
     let (asset, coat) = creature();
     let report = viewer::screenshot(&asset, &coat, &small()).unwrap().report;
-    for step in ["open device", "draw: skin", "draw: far shells", "draw: fins", "draw: near shells", "draw: develop"] {
+    for step in [
+        "open device",
+        "draw: shadow map",
+        "draw: skin",
+        "draw: far shells",
+        "draw: fins",
+        "draw: near shells",
+        "draw: develop",
+    ] {
         assert!(report.steps.0.iter().any(|s| s.name == step), "{step} is missing");
     }
     let furred: u64 = coat.primitives.iter().map(|p| p.triangles.len() as u64).sum();
     let all: u64 = asset.parts.iter().map(|p| p.stored.triangles.len() as u64).sum();
-    // SkinMesh once, three slabs from either side.
-    assert_eq!(report.counts["triangles"], all + 6 * furred);
+    // Skin once into the shadow map and once into the picture, three slabs from either side.
+    assert_eq!(report.counts["triangles"], 2 * all + 6 * furred);
     assert!(!report.device.is_empty() && report.total_ms > 0.0);
 }
 

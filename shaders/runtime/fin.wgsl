@@ -4,6 +4,7 @@
 #import furrier::shading::above_horizon
 #import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, worn_of}
 #import furrier::looks::layer_looks
+#import furrier::shadow_map::key_share
 #import furrier::constants::{INVISIBLE, LEAST_CLEAR, LEAST_COSINE}
 #import furrier::coat::{CoatVertex, Paint, Root, root_of, depth_of_opacity, presence, closeness}
 
@@ -141,13 +142,15 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     if any(view.ambient != vec3(0.0)) {
         radiance = view.ambient * lit_by_sky(look, above, dot(tangent, to_eye), hair_normal, eye_normal, worn);
     }
+    let root_m = in.position_m - (1.0 - in.uv.y) * in.offset_m;
     for (var i = 0u; i < view.light_count; i++) {
         let light = light_at(view.lights[i], in.position_m);
         let cos_light = dot(normal, light.to_light);
         let angles = angles_of(tangent, light.to_light, to_eye);
         let lateral = sqrt(max(0.0, 1.0 - angles.sin_in * angles.sin_in)) / max(abs(cos_light), LEAST_COSINE);
         let here = HairPlace(above, above * lateral, dot(light.to_light, to_eye), hair_normal, eye_normal, cos_light);
-        radiance += above_horizon(cos_light) * light.irradiance * lit(look, angles, here, worn, crowding);
+        let reaching = light.irradiance * key_share(i, root_m, in.position_m, normal, light.to_light);
+        radiance += above_horizon(cos_light) * reaching * lit(look, angles, here, worn, crowding);
     }
     return vec4(radiance * opacity, opacity);
 }

@@ -5,6 +5,7 @@
 #import furrier::shading::above_horizon
 #import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, worn_of}
 #import furrier::looks::layer_looks
+#import furrier::shadow_map::key_share
 #import furrier::constants::{DEEPEST_HAIR, INVISIBLE, LEAST_CLEAR, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
 #import furrier::coat::{CoatVertex, Paint, Root, root_of, Filled, filled_slab, Frame, Medium, Footprint, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
     lateral, shadow_slant, depth_of_opacity, presence, path_through_slab, footprint, fetch, run_through_slab, gain, medium_of, fin_share, closeness}
@@ -36,10 +37,11 @@ const FAR_TAPS: f32 = 4.0;
 
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
-    @location(0) position_m: vec3<f32>,
+    // Within the triangle, with offset and normal, or a place beyond an outline would stand behind the body, in its shadow.
+    @location(0) @interpolate(perspective, centroid) position_m: vec3<f32>,
     @location(1) uv: vec2<f32>,
-    @location(2) offset_m: vec3<f32>,
-    @location(3) normal: vec3<f32>,
+    @location(2) @interpolate(perspective, centroid) offset_m: vec3<f32>,
+    @location(3) @interpolate(perspective, centroid) normal: vec3<f32>,
     @location(4) tint: vec4<f32>,
     // What one metre of the tile becomes on this triangle at this height.
     @location(5) @interpolate(flat) x_axis: vec3<f32>,
@@ -261,13 +263,15 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     if any(view.ambient != vec3(0.0)) {
         radiance = view.ambient * lit_by_sky(look.look, above, dot(tangent, to_eye), hair_normal, eye_normal, worn);
     }
+    let root_m = in.position_m - in.offset_m * (f32(in.layer) / f32(tile.layers - 1u));
     for (var i = 0u; i < view.light_count; i++) {
         let light = light_at(view.lights[i], in.position_m);
         let light_normal = dot(normal, light.to_light);
         let depth = above * shadow_slant(at, light.to_light, medium);
         let angles = angles_of(tangent, light.to_light, to_eye);
         let here = HairPlace(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, light_normal);
-        radiance += above_horizon(light_normal) * light.irradiance * lit(look.look, angles, here, worn, look.crowding);
+        let reaching = light.irradiance * key_share(i, root_m, in.position_m, normal, light.to_light);
+        radiance += above_horizon(light_normal) * reaching * lit(look.look, angles, here, worn, look.crowding);
     }
     return vec4(radiance * opacity, opacity);
 }

@@ -2,6 +2,7 @@
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
 #import furrier::shading::skin_radiance
+#import furrier::shadow_map::key_share
 #import furrier::constants::{FADE_BELOW, LEAST_CLEAR, LEAST_COSINE}
 #import furrier::coat::{hair_sampler, albedo_texture}
 
@@ -12,8 +13,9 @@
 
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
-    @location(0) position_m: vec3<f32>,
-    @location(1) normal: vec3<f32>,
+    // Within the triangle, or a place beyond an outline would stand behind the body, in its shadow.
+    @location(0) @interpolate(perspective, centroid) position_m: vec3<f32>,
+    @location(1) @interpolate(perspective, centroid) normal: vec3<f32>,
     @location(2) colour: vec3<f32>,
     @location(3) uv: vec2<f32>,
     @location(4) coat_uv: vec2<f32>,
@@ -60,7 +62,8 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         // Upright hair of which 45 degrees is the stored case: tan θ.
         let slope = sqrt(max(0.0, 1.0 - cos_light * cos_light)) / max(abs(cos_light), LEAST_COSINE);
         let shadow = exp(-outside_depth * max(slope, 0.3));
-        radiance += light.irradiance * shadow * skin_radiance(albedo, normal, -world_ray, light.to_light, gloss);
+        let reaching = light.irradiance * key_share(i, in.position_m, in.position_m, turned, light.to_light);
+        radiance += reaching * shadow * skin_radiance(albedo, normal, -world_ray, light.to_light, gloss);
     }
     return vec4(radiance, 1.0);
 }

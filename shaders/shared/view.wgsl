@@ -12,6 +12,10 @@ struct View {
     ambient: vec3<f32>,
     light_count: u32,
     lights: array<Light, MAX_LIGHTS>,
+    // World to the clip space of the key light's shadow map.
+    shadow_from_world: mat4x4<f32>,
+    // How far what is compared with it is moved towards the light where w is 1, m; 0 without a map.
+    shadow_bias_m: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: View;

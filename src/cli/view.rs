@@ -10,7 +10,7 @@ use crate::stage::file::Format;
 use crate::viewer::{self, ViewOptions};
 use clap::Args;
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Draw a furry asset as a game would, into a picture
 #[derive(Debug, Args)]
@@ -20,6 +20,7 @@ Examples:
   furrier view furry.glb --screenshot walk.png --animation Walk --time 0.4 --orbit 70,10,0.8
   furrier view furry.glb --screenshot around.png --turntable 8 --size 256x256
   furrier view furry.glb --screenshot stretch.png --show stretch
+  furrier view mat.glb --screenshot box.png --occluder box.obj --light dir:-1,-2,0:3,3,3
   furrier view furry.glb --screenshot fins.png --show skin,fins --light dir:0,-1,-1:3,3,3 --ambient 0.2,0.2,0.2
 
 A camera file is JSON: {\"eye\": [x, y, z], \"target\": [x, y, z], \"up\": [x, y, z], \"vfov_deg\": 40}, in metres; the last
@@ -36,6 +37,13 @@ pub struct View {
     show: String,
     #[command(flatten)]
     stage: StageArgs,
+    /// A mesh to lay beside or into the fur, in the asset's units and axes: grey and opaque, it hides what it covers and casts
+    /// its shadow; the camera is framed without it
+    #[arg(long, value_name = "FILE|sample:NAME")]
+    occluder: Option<String>,
+    /// Leave out the shadow that the key light casts from limb to limb, and from the occluder
+    #[arg(long)]
+    no_shadow: bool,
     /// Play this animation, by name or number
     #[arg(long, value_name = "NAME")]
     animation: Option<String>,
@@ -61,9 +69,12 @@ impl View {
     pub fn run(self, console: &Console) -> Result<()> {
         let format = Format::of(&self.screenshot, "--screenshot")?;
         let options = self.options()?;
-        output::check(&self.screenshot, &[&self.file])?;
+        options.occluder.iter().flat_map(|thing| &thing.warnings).for_each(|line| console.warning(line));
+        let occluder = self.occluder.as_ref().map(Path::new);
+        let read: Vec<&Path> = [Some(self.file.as_path()), occluder].into_iter().flatten().collect();
+        output::check(&self.screenshot, &read)?;
         if let Some(report) = &self.report {
-            output::check(report, &[&self.file, &self.screenshot])?;
+            output::check(report, &[&read[..], &[&self.screenshot]].concat())?;
         }
         let (asset, coat) = asset::coat::read_coat(&self.file)?;
         let shot = match self.turntable {
@@ -76,11 +87,12 @@ impl View {
         }
         let device = &shot.report.device;
         let (width, height) = (shot.image.width, shot.image.height);
-        shot.legend.iter().for_each(|line| console.note(line));
+        shot.legend.iter().chain(&shot.notes).for_each(|line| console.note(line));
         let outcome = json!({
             "screenshot": self.screenshot,
             "size": [width, height],
             "legend": shot.legend,
+            "notes": shot.notes,
             "report": shot.report,
         });
         console.result(&outcome, |out| {
@@ -94,6 +106,8 @@ impl View {
             stage: self.stage.options()?,
             show: viewer::parse_show(&self.show)?,
             moment: self.animation.clone().map(|name| (name, self.time.unwrap_or(0.0))),
+            shadow_map: !self.no_shadow,
+            occluder: self.occluder.as_deref().map(asset::load).transpose()?,
             ..ViewOptions::default()
         })
     }

@@ -45,6 +45,10 @@ pub struct SkinMesh<'a> {
     pub coat_uv: Vec<Vec2>,
     /// Density factor of the coat.
     pub coat_density: Vec<f32>,
+    /// How high hair stands over it, m; empty where there is none.
+    pub hair_m: Vec<f32>,
+    /// Whether it is no part of the asset, so that the shadow map need not hold it.
+    pub guest: bool,
     /// Vertex indices.
     pub triangles: Vec<[u32; 3]>,
 }
@@ -113,6 +117,8 @@ pub struct Frame {
     pub lights: Vec<Light>,
     /// Radiance that comes from everywhere, linear RGB.
     pub ambient: Vec3,
+    /// Whether the key light, the first, casts the shadow of one limb on another.
+    pub shadow_map: bool,
 }
 
 impl Frame {

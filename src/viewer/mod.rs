@@ -2,6 +2,7 @@
 
 pub mod bald;
 pub mod chart;
+pub mod occluder;
 pub mod sitting;
 pub mod stage;
 pub mod subject;
@@ -15,7 +16,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{Choice, Gpu};
 use crate::math::{DVec3, Vec3};
 use crate::metrics::timing::{Recorder, Report};
-use crate::runtime::gpu::{Prepared, Renderer};
+use crate::runtime::gpu::{KeyShadow, Prepared, Renderer};
 use crate::runtime::{Frame, Picture, Show};
 use crate::stage::camera::{Orbit, Viewpoint};
 use crate::stage::file::Format;
@@ -38,6 +39,10 @@ pub struct ViewOptions {
     pub moment: Option<(String, f64)>,
     /// Shading samples along a pixel's edge, 1 to 8. Edges are sampled four times as often in any case.
     pub samples: u32,
+    /// Whether the key light casts the shadow of one limb on another; charts have none.
+    pub shadow_map: bool,
+    /// A thing beside the asset, in its units and axes. It is no part of what the camera is framed for.
+    pub occluder: Option<Asset>,
 }
 
 impl Default for ViewOptions {
@@ -48,6 +53,8 @@ impl Default for ViewOptions {
             show: Shown::default(),
             moment: None,
             samples: 1,
+            shadow_map: true,
+            occluder: None,
         }
     }
 }
@@ -80,6 +87,8 @@ pub struct Shot {
     pub report: Report,
     /// What the colours of a chart mean, one sentence each.
     pub legend: Vec<String>,
+    /// What may not be as expected, one sentence each.
+    pub notes: Vec<String>,
 }
 
 impl Shot {
@@ -179,17 +188,23 @@ struct Shots {
     pictures: Vec<Picture>,
     recorder: Recorder,
     legend: Vec<String>,
+    notes: Vec<String>,
 }
 
 impl Shots {
     fn developed(mut self, picture: Picture, options: &ViewOptions) -> Shot {
         let develop = || tone::develop(&picture.film(), &options.stage.development);
         let image = self.recorder.step("draw: develop", develop, bytes_of);
-        Shot { picture, image, report: self.recorder.finish(), legend: self.legend }
+        Shot { picture, image, report: self.recorder.finish(), legend: self.legend, notes: self.notes }
     }
 }
 
 fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpoint]) -> Result<Shots> {
+    if options.occluder.is_some() && !matches!(options.show, Shown::Coat(_)) {
+        return Err(Error::usage("field, patches, stretch and bald are shown of the asset alone")
+            .with_parameter("occluder")
+            .with_expected("some of skin, shells, fins to `show` beside it"));
+    }
     let mut recorder = Recorder::new("");
     let gpu = recorder.step("open device", || Gpu::open(&options.device), |_| 0)?;
     recorder.device(gpu.adapter.to_string());
@@ -212,10 +227,13 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
         Shown::Bald => Ok((stage::scene(asset, coat, &textures, &pose), Show::default(), Vec::new())),
         Shown::Chart(chart) => drawing(chart),
     };
-    let (scene, show, legend) = recorder.step("pose", staged, |_| 0)?;
+    let (mut scene, show, legend) = recorder.step("pose", staged, |_| 0)?;
     let charted = matches!(options.show, Shown::Chart(_));
     let subject = subject(asset, coat)?;
     let origin_m = subject.origin_m;
+    if let Some(thing) = &options.occluder {
+        scene.skins.push(occluder::skin(thing, coat.metres_per_unit, origin_m)?);
+    }
     let points_m = stage::points_m(&scene);
     let renderer = recorder.step(
         "passes and tiles",
@@ -239,6 +257,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
     let marked = (options.show == Shown::Bald).then(|| bald::marked(&scene));
     let mut over_skin = marked.as_ref().map(|marked| renderer.prepare(marked)).transpose()?;
     let mut pictures = Vec::with_capacity(viewpoints.len());
+    let mut notes = Vec::new();
     for viewpoint in viewpoints {
         let start = Instant::now();
         let camera = viewpoint.camera(&subject, stage.aspect())?;
@@ -252,9 +271,13 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
         } else {
             stage.lit(&subject, &camera)?
         };
-        let view = sitting::frame(&camera, origin_m, &points_m, stage.size, lit);
+        let view = Frame {
+            shadow_map: options.shadow_map && !charted,
+            ..sitting::frame(&camera, origin_m, &points_m, stage.size, lit)
+        };
         recorder.row("draw: camera and light", ms_since(start), 0);
-        let mut picture = draw(&mut prepared, &view, show, &mut recorder)?;
+        let (mut picture, shadow) = draw(&mut prepared, &view, show, &mut recorder)?;
+        notes.extend(note(shadow).filter(|new| !notes.contains(new)));
         if let Some(over_skin) = &mut over_skin {
             let hair = recorder.step("hair over skin", || over_skin.hair_over_skin(&view), |_| 0)?;
             picture = bald::picture(&hair, &picture);
@@ -272,11 +295,16 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
             100.0 * baldness.share()
         ));
     }
-    Ok(Shots { pictures, recorder, legend })
+    Ok(Shots { pictures, recorder, legend, notes })
 }
 
 /// Draws one view. What it costs is in the rows that begin with `draw:`, to the last of it; what is in others is paid once.
-fn draw(prepared: &mut Prepared<'_>, view: &Frame, show: Show, recorder: &mut Recorder) -> Result<Picture> {
+fn draw(
+    prepared: &mut Prepared<'_>,
+    view: &Frame,
+    show: Show,
+    recorder: &mut Recorder,
+) -> Result<(Picture, KeyShadow)> {
     let start = Instant::now();
     let drawn = prepared.draw(view, show)?;
     let mut on_device = 0.0;
@@ -289,7 +317,21 @@ fn draw(prepared: &mut Prepared<'_>, view: &Frame, show: Show, recorder: &mut Re
     // Where the adapter has no clock, all of the passes stands here.
     recorder.row("draw: wait and read back", ms_since(start) - on_device, drawn.target_bytes);
     recorder.count("pictures", 1);
-    Ok(drawn.picture)
+    Ok((drawn.picture, drawn.shadow))
+}
+
+/// What a user should know of the shadow.
+fn note(shadow: KeyShadow) -> Option<String> {
+    let text = match shadow {
+        KeyShadow::Off | KeyShadow::Cast { guests_reach: true } => return None,
+        KeyShadow::Cast { guests_reach: false } => {
+            "the occluder casts no shadow on the asset: seen from the key light it lies beside it, behind it or out of reach"
+        }
+        KeyShadow::TooNear => {
+            "the key light stands within the asset or close beside it: no limb casts its shadow on another"
+        }
+    };
+    Some(text.to_owned())
 }
 
 fn ms_since(start: Instant) -> f64 {

@@ -64,5 +64,6 @@ pub(super) fn frame(camera: &Camera, origin_m: DVec3, points_m: &[Vec3], size: [
         size,
         lights: lit.lights,
         ambient: lit.ambient,
+        shadow_map: true,
     }
 }

@@ -203,9 +203,18 @@ fn furred_skin<'a>(
                 Sampled::Skin => 1.0,
             })
             .collect(),
+        hair_m: hair_m(posed, coat_primitive),
         triangles: coat_primitive.triangles.clone(),
         ..whole
     }
+}
+
+/// How high hair stands over each coat vertex's skin, m.
+fn hair_m(posed: &Posed, coat_primitive: &CoatPrimitive) -> Vec<f32> {
+    let height = |(&v, &offset): (&u32, &Vec3)| {
+        (posed.world_from_offset[v as usize] * offset).dot(posed.normals[v as usize]).max(0.0)
+    };
+    coat_primitive.base_vertex.iter().zip(&coat_primitive.offset).map(height).collect()
 }
 
 /// A part where no coat covers it.

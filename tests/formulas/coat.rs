@@ -93,6 +93,7 @@ pub fn groups(gpu: &Gpu, tile: &Tile) -> [Group<'static>; 2] {
         size: [1, 1],
         lights: vec![],
         ambient: Vec3::ZERO,
+        shadow_map: false,
     };
     let slopes = vec![[0.0_f32; 2]; tile.shells.layers as usize];
     let tables = vec![
@@ -100,7 +101,7 @@ pub fn groups(gpu: &Gpu, tile: &Tile) -> [Group<'static>; 2] {
         gpu.buffer("slopes", &slopes, wgpu::BufferUsages::STORAGE),
         gpu.buffer("mips", &Mip::of(tile), wgpu::BufferUsages::STORAGE),
     ];
-    let view = gpu.buffer("view", &[ViewUniform::new(&frame)], wgpu::BufferUsages::UNIFORM);
+    let view = gpu.buffer("view", &[ViewUniform::new(&frame, None)], wgpu::BufferUsages::UNIFORM);
     [(&[Binding::Uniform], vec![view]), (&[Binding::Uniform, Binding::Read, Binding::Read], tables)]
 }
 

@@ -17,6 +17,8 @@ pub const ELSEWHERE: &[(&str, &[&str], &str)] = &[
     ),
     ("runtime/fin.wgsl", &["vertex", "fragment"], "look.rs compares pixels of a fin"),
     ("runtime/skin.wgsl", &["vertex", "fragment"], "look.rs compares pixels of skin"),
+    ("runtime/caster.wgsl", &["vertex"], SHADOWS),
+    ("shared/shadow_map.wgsl", &["key_share"], SHADOWS),
     ("runtime/resolve.wgsl", &["vertex", "fragment"], "a mean of samples: all tests of the runtime look through it"),
     ("shared/coat.wgsl", &["fetch"], "samples a texture: twins.rs compares it between texels and mips"),
     (
@@ -59,6 +61,7 @@ pub const ELSEWHERE: &[(&str, &[&str], &str)] = &[
     ("hybrid/poison.wgsl", &["poison"], "writes NaN: a film that keeps any fails every comparison"),
 ];
 
+const SHADOWS: &str = "draws and samples the shadow map: shadow_map.rs looks for it in pictures, place by place";
 const WALKS: &str = "walks the volume as it lies on the device: hybrid_twins.rs compares the pictures pixel by pixel";
 const LISTS: &str = "makes and reads lists of a picture's pixels: hybrid_twins.rs compares the pictures pixel by pixel";
 const COLOURS: &str = "reads what other passes wrote: hybrid_twins.rs compares every layer of the pictures";

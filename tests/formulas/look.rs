@@ -92,6 +92,7 @@ fn frame(ray: Vec3) -> Frame {
                 .into(),
         ],
         ambient: Vec3::new(0.2, 0.3, 0.4),
+        shadow_map: false,
     }
 }
 

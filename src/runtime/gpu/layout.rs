@@ -5,7 +5,9 @@ use crate::error::Result;
 use crate::gpu::light::LightItem;
 use crate::shade::fibre::{FibreModel, FibreParameters};
 use crate::shade::law::known;
+use crate::runtime::casters::Casters;
 use crate::runtime::draw_list::{CoatMesh, Frame, MAX_LIGHTS, SkinMesh};
+use crate::runtime::shadow_view::ShadowView;
 use bytemuck::{Pod, Zeroable};
 
 /// `Frame` of `shared/view.wgsl`.
@@ -22,11 +24,16 @@ pub struct ViewUniform {
     pub light_count: u32,
     /// The lights.
     pub lights: [LightItem; MAX_LIGHTS],
+    /// Columns of the matrix to the shadow map.
+    pub shadow_from_world: [[f32; 4]; 4],
+    /// How far what is compared with it is moved, m; 0 without a map.
+    pub shadow_bias_m: f32,
+    pub(super) _pad: [f32; 3],
 }
 
 impl ViewUniform {
-    /// The view's numbers; lights past [`MAX_LIGHTS`] were refused before.
-    pub fn new(view: &Frame) -> Self {
+    /// The view's numbers, and those of its shadow map where there is one; lights past [`MAX_LIGHTS`] were refused before.
+    pub fn new(view: &Frame, shadow: Option<&ShadowView>) -> Self {
         let mut lights = [LightItem::default(); MAX_LIGHTS];
         for (slot, light) in lights.iter_mut().zip(&view.lights) {
             *slot = light.into();
@@ -37,6 +44,9 @@ impl ViewUniform {
             ambient: view.ambient.to_array(),
             light_count: view.lights.len().min(MAX_LIGHTS) as u32,
             lights,
+            shadow_from_world: shadow.map_or([[0.0; 4]; 4], |shadow| shadow.clip_from_world.to_cols_array_2d()),
+            shadow_bias_m: shadow.map_or(0.0, |shadow| shadow.bias_m),
+            _pad: [0.0; 3],
         }
     }
 }
@@ -259,5 +269,26 @@ impl SkinVertex {
                 painted_uv: skin.painted_uv.get(i).map_or([0.0; 2], |uv| uv.to_array()),
             })
             .collect()
+    }
+}
+
+/// A vertex of `runtime/caster.wgsl`, attributes in the order of their locations.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct CasterVertex {
+    /// Position, m.
+    pub position_m: [f32; 3],
+    /// How far it moves across the light, m.
+    pub swell_m: [f32; 3],
+}
+
+impl CasterVertex {
+    /// Attribute formats, by location.
+    pub const ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
+
+    /// The vertices of `casters`.
+    pub fn of(casters: &Casters) -> Vec<Self> {
+        let vertices = casters.positions_m.iter().zip(&casters.swell_m);
+        vertices.map(|(p, s)| Self { position_m: p.to_array(), swell_m: s.to_array() }).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! The coat on a graphics device (`docs/steps/runtime.md`; shaders in `shaders/runtime/`).
 //!
-//! Order: skin (writes depth); the far side of the shells, outer to inner; fins; the near side, inner to outer. Along any
+//! Order: the key light's shadow map; skin (writes depth); the far side of the shells, outer to inner; fins; the near side, inner to outer. Along any
 //! ray through a convex body that is back to front.
 //!
 //! Made once and kept: passes and tiles in a [`Renderer`], the geometry of a pose in a [`Prepared`]. A view costs its
@@ -11,6 +11,7 @@ pub mod layout;
 pub mod pipelines;
 mod prepared;
 mod resources;
+mod shadow_map;
 mod targets;
 
 pub use prepared::Prepared;
@@ -21,11 +22,12 @@ use crate::gpu::Gpu;
 use crate::runtime::draw_list::{DrawList, Picture};
 use pipelines::Pipelines;
 use resources::GpuTile;
+use shadow_map::ShadowMap;
 
 /// Time and memory of one pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassCost {
-    /// `skin`, `far shells`, `fins`, `near shells`.
+    /// `shadow map`, `skin`, `far shells`, `fins`, `near shells`.
     pub name: &'static str,
     /// Device time, ms; `None` where the adapter has no clock.
     pub ms: Option<f64>,
@@ -46,12 +48,29 @@ pub struct Drawn {
     pub passes: Vec<PassCost>,
     /// Memory of the targets drawn into.
     pub target_bytes: u64,
+    /// What came of the key light's shadow.
+    pub shadow: KeyShadow,
+}
+
+/// Whether the key light cast a shadow by a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeyShadow {
+    /// It was not asked to, or there is no light.
+    Off,
+    /// It did.
+    Cast {
+        /// Whether what is no part of the asset can cast its shadow on it.
+        guests_reach: bool,
+    },
+    /// The light stands within the asset or close beside it, so that no map holds what it sees.
+    TooNear,
 }
 
 /// A device with what all coats of the same tiles are drawn with, whatever their pose.
 pub struct Renderer<'a> {
     gpu: &'a Gpu,
     pipelines: Pipelines,
+    shadow_map: ShadowMap,
     samples: u32,
     tiles: Vec<GpuTile>,
     /// Stands in for a tile where skin has none.
@@ -74,7 +93,7 @@ impl<'a> Renderer<'a> {
         let pipelines = Pipelines::new(gpu, samples)?;
         let bare = GpuTile::new(gpu, &pipelines.layouts, &resources::bare_tile())?;
         let tiles = tiles.iter().map(|tile| GpuTile::new(gpu, &pipelines.layouts, tile)).collect::<Result<_>>()?;
-        Ok(Self { gpu, pipelines, samples, tiles, bare })
+        Ok(Self { gpu, pipelines, shadow_map: ShadowMap::new(gpu)?, samples, tiles, bare })
     }
 
     /// Memory of the tiles' textures, bytes.

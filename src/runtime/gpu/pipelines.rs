@@ -13,7 +13,7 @@ macro_rules! source {
 }
 
 /// Modules that others import, imported ones first.
-pub const SHARED: [Source; 9] = [
+pub const SHARED: [Source; 10] = [
     Source::constants("constants", &CONSTANTS),
     Source::constants("law_constants", &LAW_CONSTANTS),
     source!("shared/look.wgsl"),
@@ -21,6 +21,7 @@ pub const SHARED: [Source; 9] = [
     source!("shared/law.wgsl"),
     source!("shared/light.wgsl"),
     source!("shared/view.wgsl"),
+    source!("shared/shadow_map.wgsl"),
     source!("shared/shading.wgsl"),
     source!("shared/coat.wgsl"),
 ];
@@ -30,6 +31,8 @@ pub const SKIN: Source = source!("runtime/skin.wgsl");
 pub const SHELL: Source = source!("runtime/shell.wgsl");
 /// Fins.
 pub const FIN: Source = source!("runtime/fin.wgsl");
+/// What hides the key light.
+pub const CASTER: Source = source!("runtime/caster.wgsl");
 /// Samples to pixels.
 pub const RESOLVE: Source = source!("runtime/resolve.wgsl");
 
@@ -46,7 +49,7 @@ pub const RESOLVED_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
 /// Layouts of what passes bind.
 pub struct Layouts {
-    /// Group 0: camera and lights.
+    /// Group 0: camera and lights, and the key light's shadow map.
     pub view: wgpu::BindGroupLayout,
     /// Group 1: a tile.
     pub tile: wgpu::BindGroupLayout,
@@ -72,11 +75,12 @@ impl Layouts {
             view_dimension,
             multisampled: false,
         };
-        let depths = BindingType::Texture {
+        let depths = |multisampled| BindingType::Texture {
             sample_type: TextureSampleType::Depth,
             view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: true,
+            multisampled,
         };
+        let comparison = BindingType::Sampler(SamplerBindingType::Comparison);
         let array = texture(true, wgpu::TextureViewDimension::D2Array);
         let group = |label, kinds: &[BindingType]| {
             let entries: Vec<_> = (0..)
@@ -92,12 +96,12 @@ impl Layouts {
                 .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
         };
         Self {
-            view: group("view", &[uniform]),
+            view: group("view", &[uniform, comparison, depths(false)]),
             tile: group("tile", &[uniform, storage, storage, sampler, array, array, array, storage, storage]),
             geometry: group("geometry", &[storage, storage, uniform, sampler, array, sampler, array]),
             material: group("material", &[sampler, array, sampler, array]),
             fin: group("fin", &[sampler, array, array]),
-            samples: group("samples", &[texture(false, wgpu::TextureViewDimension::D2), depths]),
+            samples: group("samples", &[texture(false, wgpu::TextureViewDimension::D2), depths(true)]),
         }
     }
 }

@@ -3,14 +3,16 @@
 use super::layout::ViewUniform;
 use super::pipelines::DepthPipelines;
 use super::resources::{self, GpuFur, GpuSkin, Textures};
+use super::shadow_map::{GpuCasters, MAP_BYTES};
 use super::targets::Targets;
-use super::{Drawn, PassCost, Renderer};
+use super::{Drawn, KeyShadow, PassCost, Renderer};
 use crate::error::{Error, Result};
 use crate::gpu::Timer;
 use crate::runtime::draw_list::{DrawList, Frame, MAX_LIGHTS, Picture, Show};
+use crate::runtime::shadow_view::ShadowView;
 use bytemuck::Zeroable;
 
-/// The passes in the order drawn.
+/// The passes in the order drawn, after that of the shadow map.
 const PASSES: [&str; 4] = ["skin", "far shells", "fins", "near shells"];
 
 /// A posed asset on the device, and what each picture of it is drawn with.
@@ -18,6 +20,7 @@ pub struct Prepared<'a> {
     renderer: &'a Renderer<'a>,
     skins: Vec<GpuSkin>,
     furs: Vec<GpuFur>,
+    casters: GpuCasters,
     /// Of geometry and the skin's textures.
     bytes: u64,
     /// Camera and lights, written anew for each picture.
@@ -51,14 +54,23 @@ impl<'a> Prepared<'a> {
             .collect();
         let geometry =
             skins.iter().map(|skin| skin.geometry_bytes).chain(furs.iter().map(|fur| fur.bytes)).sum::<u64>();
+        let map = &renderer.shadow_map;
+        let casters = GpuCasters::new(gpu, map, scene, &view);
+        let of_view = [
+            view.as_entire_binding(),
+            wgpu::BindingResource::Sampler(&map.sampler),
+            wgpu::BindingResource::TextureView(&map.view),
+        ];
+        let view_group = resources::bind(gpu, &layouts.view, &of_view);
         Ok(Self {
             renderer,
-            bytes: geometry + textures.bytes,
+            bytes: geometry + textures.bytes + casters.bytes,
             skins,
             furs,
-            view_group: gpu.group(&layouts.view, &[&view]),
+            casters,
+            view_group,
             view,
-            timer: Timer::new(gpu, PASSES.len() as u32),
+            timer: Timer::new(gpu, 1 + PASSES.len() as u32),
             targets: None,
             depths: None,
         })
@@ -86,11 +98,15 @@ impl<'a> Prepared<'a> {
             Some(targets) => targets,
             None => Targets::new(gpu, pipelines, view.size, *samples)?,
         };
-        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view)));
+        let key = view.lights.first().filter(|_| view.shadow_map);
+        let shadow = key.and_then(|light| ShadowView::of(light, &self.casters.extent));
+        let uniform = ViewUniform::new(view, shadow.as_ref());
+        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&uniform));
         let mut encoder = gpu.encoder("frame");
-        let mut passes = Vec::with_capacity(PASSES.len());
+        let casters = shadow.is_some().then_some(&self.casters);
+        let mut passes = vec![self.renderer.shadow_map.draw(&mut encoder, casters, self.timer.writes(0))];
         for (index, name) in PASSES.into_iter().enumerate() {
-            let mut pass = targets.pass(&mut encoder, name, index, self.timer.writes(index as u32));
+            let mut pass = targets.pass(&mut encoder, name, index, self.timer.writes(1 + index as u32));
             pass.set_bind_group(0, &self.view_group, &[]);
             let mut cost = PassCost { name, ms: None, bytes: 0, draw_calls: 0, triangles: 0 };
             match index {
@@ -109,9 +125,14 @@ impl<'a> Prepared<'a> {
         if let Some(times) = self.timer.read_ms(gpu)? {
             passes.iter_mut().zip(times).for_each(|(pass, ms)| pass.ms = Some(ms));
         }
-        let target_bytes = targets.bytes;
+        let target_bytes = targets.bytes + MAP_BYTES;
         self.targets = Some(targets);
-        Ok(Drawn { picture, passes, target_bytes })
+        let shadow = match (key, shadow) {
+            (None, _) => KeyShadow::Off,
+            (Some(_), Some(ShadowView { guests_reach, .. })) => KeyShadow::Cast { guests_reach },
+            (Some(_), None) => KeyShadow::TooNear,
+        };
+        Ok(Drawn { picture, passes, target_bytes, shadow })
     }
 
     /// How much hair lies over the skin, as a picture: red is the mean optical depth that all near shells have at a pixel, green
@@ -123,7 +144,7 @@ impl<'a> Prepared<'a> {
         let Renderer { gpu, pipelines, samples, .. } = self.renderer;
         let targets = Targets::new(gpu, pipelines, view.size, *samples)?;
         let depths = self.depths.take().unwrap_or_else(|| DepthPipelines::new(gpu, pipelines));
-        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view)));
+        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view, None)));
         let mut encoder = gpu.encoder("hair over skin");
         for (index, name) in PASSES.into_iter().enumerate() {
             let mut pass = targets.pass(&mut encoder, name, index, None);
