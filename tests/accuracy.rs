@@ -21,6 +21,7 @@ fn recipe(lean_deg: f32) -> TileRecipe {
         fins: FinParameters::default(),
         skin: Vec3::splat(0.5),
         lean_deg,
+        looks: None,
     }
 }
 

@@ -60,6 +60,7 @@ impl Ball {
             fins: FinParameters { texture_width: 64, texture_height: 16, thickness_mm: 8.0 },
             skin: Vec3::splat(0.5),
             lean_deg: 30.0,
+            looks: None,
         }
     }
 

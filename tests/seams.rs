@@ -54,6 +54,7 @@ fn small_tile(preset: &furrier::preset::Preset) -> furrier::data::coat::Tile {
         fins: preset.fins,
         skin: Vec3::from(preset.colour.skin),
         lean_deg: preset.groom.lean_deg,
+        looks: None,
     };
     furrier::coat::tile::bake(&hair, &recipe)
 }

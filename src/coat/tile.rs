@@ -35,7 +35,11 @@ impl TileRecipe {
 
 /// Shares of undercoat per slab, where `guard` is the hair area of guard hair alone.
 pub(super) fn undercoat_shares(guard: &[f32], all: &[f32]) -> Vec<f32> {
-    guard.iter().zip(all).map(|(guard, all)| if *all > 0.0 { (1.0 - guard / all).clamp(0.0, 1.0) } else { 0.0 }).collect()
+    guard
+        .iter()
+        .zip(all)
+        .map(|(guard, all)| if *all > 0.0 { (1.0 - guard / all).clamp(0.0, 1.0) } else { 0.0 })
+        .collect()
 }
 
 /// Bakes the textures of a tile.

@@ -195,10 +195,7 @@ impl<'a> GuardShader<'a> {
             let angles = Angles::of_lanes(site.hair, to_light, site.to_eye);
             let (depth, open) = match i {
                 0 => (site.key_depth, F32s::splat(1.0)),
-                _ => (
-                    slant_depths(site.above, to_light, site.normal, site.lean),
-                    terminators(to_light, site.normal),
-                ),
+                _ => (slant_depths(site.above, to_light, site.normal, site.lean), terminators(to_light, site.normal)),
             };
             let normals = [normals[0], normals[1], to_light.dot(site.normal)];
             let place = Place::new(angles, to_light.dot(site.to_eye), site.above, depth, normals);

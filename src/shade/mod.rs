@@ -5,9 +5,7 @@
 //! then sends back ∫ S cos θ_i dω_i, which is its albedo and must not pass 1.
 
 pub mod fibre;
-pub mod kajiya_kay;
 pub mod law;
-pub mod lobes;
 mod real;
 
 pub use real::Real;
@@ -70,13 +68,4 @@ impl Angles<f64> {
 #[inline(always)]
 fn cosine<R: Real>(x: R) -> R {
     x.max(R::of(-1.0)).min(R::of(1.0))
-}
-
-/// The power to which a transmittance towards the light is raised for a channel of the given hair albedo.
-///
-/// Light that one hair scatters reaches the next, so bright fur is darkened less by itself than the extinction says. In
-/// the diffusion limit the effective extinction is √(1 − albedo) of the real one (Ishimaru 1978, isotropic scattering).
-#[inline(always)]
-pub fn shadow_power<R: Real>(albedo: R) -> R {
-    (R::of(1.0) - albedo).max(R::of(0.0)).min(R::of(1.0)).sqrt()
 }

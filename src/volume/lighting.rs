@@ -1,12 +1,12 @@
 //! Which way shadows of lights go.
 
 use super::scene::Lighting;
-use crate::gpu::Constant::{self, F32};
-use crate::shade::law::polynomial::{DEEPEST, LOWEST_EYE, LOWEST_LIGHT, SLANTS};
-use crate::shade::law::{BRIGHTEST, FADING, LEAST_ABOVE, MOST_SLANT, colour};
 use crate::data::light::Light;
 use crate::data::mesh::Mesh;
+use crate::gpu::Constant::{self, F32};
 use crate::math::Vec3;
+use crate::shade::law::polynomial::{DEEPEST, LOWEST_EYE, LOWEST_LIGHT, SLANTS};
+use crate::shade::law::{BRIGHTEST, FADING, LEAST_ABOVE, MOST_SLANT, colour};
 
 /// What the law of light in Rust and in shaders both need: the module `furrier::law_constants`.
 pub const LAW_CONSTANTS: [Constant; 12] = [

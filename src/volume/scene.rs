@@ -4,10 +4,10 @@ use crate::data::fields::Fields;
 use crate::data::light::{Directional, Light};
 use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;
+use crate::error::Result;
 use crate::fur::groom::fibre::Fibre;
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, Vec3s};
-use crate::error::Result;
 use crate::shade::fibre::Fibres;
 use crate::shade::law::known::{self, Scattering};
 use crate::stage::light::Lit;
@@ -156,13 +156,6 @@ pub fn terminators<I: Isa>(to_light: Vec3s<I>, normal: Vec3s<I>) -> F32s<I> {
     x * x * (F32s::splat(3.0) - x * 2.0)
 }
 
-/// Transmittance per channel: optical depth times the power that the hair's colour gives ([`crate::shade::shadow_power`]).
-#[inline(always)]
-pub fn through<I: Isa>(power: Vec3s<I>, depth: F32s<I>) -> Vec3s<I> {
-    let depth = -depth;
-    Vec3s::new((power.x * depth).exp_negative(), (power.y * depth).exp_negative(), (power.z * depth).exp_negative())
-}
-
 /// Colours at root, middle and tip, linear in between, where s ∈ [0, 1] goes along the hair.
 #[inline(always)]
 pub fn ramps<I: Isa>(ramp: &[Vec3; 3], s: F32s<I>) -> Vec3s<I> {
@@ -171,12 +164,6 @@ pub fn ramps<I: Isa>(ramp: &[Vec3; 3], s: F32s<I>) -> Vec3s<I> {
     let lower = root + (middle - root) * twice;
     let upper = middle + (tip - middle) * (twice - one);
     lower.select(twice.lt(one), upper)
-}
-
-/// [`sky_depth`] in lanes.
-#[inline(always)]
-pub fn sky_depths<I: Isa>(above: F32s<I>) -> F32s<I> {
-    (above * (1.5 * std::f32::consts::FRAC_PI_4)).min(F32s::splat(DEEPEST_HAIR))
 }
 
 /// Least cosine between normal and light for which hair shadows as a flat layer.

@@ -2,8 +2,8 @@
 
 use super::constants::CONSTANTS;
 use crate::error::{Error, Result};
-use crate::volume::lighting::LAW_CONSTANTS;
 use crate::gpu::{Binding, Gpu, Kernel, Library, Source, Text};
+use crate::volume::lighting::LAW_CONSTANTS;
 
 macro_rules! source {
     ($path:literal) => {

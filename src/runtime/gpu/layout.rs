@@ -3,11 +3,11 @@
 use crate::data::coat::{FinEdge, LOOK, Sampled, ShellStack, Tile};
 use crate::error::Result;
 use crate::gpu::light::LightItem;
-use crate::shade::fibre::{FibreModel, FibreParameters};
-use crate::shade::law::known;
 use crate::runtime::casters::Casters;
 use crate::runtime::draw_list::{CoatMesh, Frame, MAX_LIGHTS, SkinMesh};
 use crate::runtime::shadow_view::ShadowView;
+use crate::shade::fibre::{FibreModel, FibreParameters};
+use crate::shade::law::known;
 use bytemuck::{Pod, Zeroable};
 
 /// `Frame` of `shared/view.wgsl`.

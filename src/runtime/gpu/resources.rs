@@ -1,6 +1,8 @@
 //! What pictures need on the device: tiles, and the geometry of a pose.
 
-use super::layout::{CoatVertex, FinInstance, LayerLook, Mip, PaintUniform, SkinVertex, TileUniform, medium_unit_per_m};
+use super::layout::{
+    CoatVertex, FinInstance, LayerLook, Mip, PaintUniform, SkinVertex, TileUniform, medium_unit_per_m,
+};
 use super::pipelines::Layouts;
 use crate::data::coat::{FinTexture, Sampled, ShellStack, Tile};
 use crate::data::image::Image8;

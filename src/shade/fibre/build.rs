@@ -5,7 +5,6 @@ use super::scale::{scaled, sent, shares};
 use super::simulate::{self, Class, SLANTS, concentration, simulate};
 use super::{Fibre, FibreLobe, FibreModel, FibreParameters, LOBES};
 use crate::math::solve::least_squares;
-use crate::shade::lobes::LobeParameters;
 use std::f64::consts::PI;
 
 impl Fibre {
@@ -13,7 +12,7 @@ impl Fibre {
     pub fn new(model: FibreModel, parameters: &FibreParameters) -> Self {
         match model {
             FibreModel::Medulla => medullated(parameters),
-            FibreModel::Sadeghi => sadeghi(&LobeParameters::default()),
+            FibreModel::Sadeghi => sadeghi(),
             FibreModel::KajiyaKay => kajiya_kay(0.9, 0.05, 8.0),
         }
     }
@@ -52,10 +51,8 @@ fn medullated(p: &FibreParameters) -> Fibre {
     });
     let tilt = f64::from(p.tilt_deg).to_radians();
     let [r, tt, trt] = variances(f64::from(p.roughness));
-    let own = if medulla.along > 1e-3 { (0.25 / medulla.along).max(LEAST_MEDULLA) } else { 250.0 };
-    let lobe = |class: &Class, tilt, variance| {
-        scaled(tilt, variance, &shares(|sine| at(&class.share, sine)))
-    };
+    let own = if medulla.along > 1e-3 { (0.25 / medulla.along).max(LEAST_MEDULLA) } else { EVEN };
+    let lobe = |class: &Class, tilt, variance| scaled(tilt, variance, &shares(|sine| at(&class.share, sine)));
     let cuticle = [lobe(surface, -tilt, r), lobe(through, 0.5 * tilt, tt), lobe(inner, 1.5 * tilt, trt)];
     Fibre {
         lobes: filled(cuticle, own, 1.0),
@@ -97,26 +94,38 @@ fn at(shares: &[f64; SLANTS], sine: f64) -> f64 {
     curve.iter().zip(terms(sine)).map(|(a, b)| a * b).sum::<f64>().max(LEAST_SHARE * mean)
 }
 
-/// Sadeghi et al. 2010, with what their lobes leave over as light that is scattered all around.
-fn sadeghi(p: &LobeParameters) -> Fibre {
-    let lobe = |l: &crate::shade::lobes::Lobe| {
-        scaled(l.shift_rad, (2.0 * l.width_rad).powi(2), &shares(|_| l.albedo))
+/// A lobe of Sadeghi et al. 2010: albedo, shift and width along the hair in degrees.
+type ArtistLobe = [f64; 3];
+
+/// Their brunette: R, TT and TRT, with the cuticle's tilt of 3 to 5° that Marschner et al. 2003 measured.
+const BRUNETTE: [ArtistLobe; 3] = [[0.08, -4.0, 6.0], [0.12, 2.0, 5.0], [0.2, 6.0, 11.0]];
+/// Albedo of what is scattered all around.
+const DIFFUSE: f64 = 0.5;
+
+/// Sadeghi et al. 2010, with what their lobes leave over as light that is scattered all around. Widths are of (θ_i + θ_o)/2.
+fn sadeghi() -> Fibre {
+    let lobe = |&[albedo, shift, width]: &ArtistLobe| {
+        scaled(shift.to_radians(), (2.0 * width.to_radians()).powi(2), &shares(|_| albedo))
     };
-    let albedo = p.r.albedo + p.tt.albedo + p.trt.albedo + p.diffuse;
+    let albedo = DIFFUSE + BRUNETTE.iter().map(|lobe| lobe[0]).sum::<f64>();
+    let [r, tt, trt] = &BRUNETTE;
     Fibre {
-        lobes: filled([lobe(&p.r), lobe(&p.tt), lobe(&p.trt)], 250.0, albedo),
+        lobes: filled([lobe(r), lobe(tt), lobe(trt)], EVEN, albedo),
         paths: [0.0, 1.0, 2.0, 1.0],
         azimuth: Azimuth::new(&Around {
             mirror: 1.0,
-            through: 1.0 / (p.tt_azimuth_rad * p.tt_azimuth_rad),
-            inner: [1.0 - p.glint, 0.0],
-            glint_sharpness: 1.0 / (p.glint_width_rad * p.glint_width_rad),
-            glint_rad: p.glint_angle_rad,
+            through: 1.0 / 30.0_f64.to_radians().powi(2),
+            inner: [0.75, 0.0],
+            glint_sharpness: 1.0 / 10.0_f64.to_radians().powi(2),
+            glint_rad: 35.0_f64.to_radians(),
             medulla: [0.0, 0.5],
         }),
         inverse_index_squared: 0.0,
     }
 }
+
+/// Variance of a lobe that is the same all along the hair.
+const EVEN: f64 = 250.0;
 
 /// Kajiya and Kay 1989: `diffuse` tinted, `specular` on the mirror cone, the same all around.
 fn kajiya_kay(diffuse: f64, specular: f64, exponent: f64) -> Fibre {
@@ -125,7 +134,7 @@ fn kajiya_kay(diffuse: f64, specular: f64, exponent: f64) -> Fibre {
             FibreLobe { softness: 1.0, ..FibreLobe::default() },
             FibreLobe { softness: 1.0, ..FibreLobe::default() },
             scaled(0.0, 1.0 / exponent, &shares(|_| specular)),
-            scaled(0.0, 250.0, &shares(|_| diffuse)),
+            scaled(0.0, EVEN, &shares(|_| diffuse)),
         ],
         paths: [0.0, 0.0, 0.0, 1.0],
         azimuth: Azimuth::new(&Around {

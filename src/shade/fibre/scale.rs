@@ -92,7 +92,8 @@ pub(super) fn scaled(tilt_rad: f64, variance: f64, shares: &Shares) -> FibreLobe
                 }
                 let (here, around) = (dot(&scale, &own[o]), dot(&scale, &sums));
                 // By how much the sent share changes with each factor, and what is missing of it.
-                let change: [f64; SCALE_TERMS] = std::array::from_fn(|t| (here * sums[t] + own[o][t] * around) / shares[o]);
+                let change: [f64; SCALE_TERMS] =
+                    std::array::from_fn(|t| (here * sums[t] + own[o][t] * around) / shares[o]);
                 (change, 1.0 - here * around / shares[o])
             })
             .collect();

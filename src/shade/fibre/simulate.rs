@@ -165,13 +165,7 @@ fn leaving(at: DVec3, direction: DVec3, radius: f64) -> f64 {
 }
 
 /// Distance to a scattering in the medulla before the wall, if there is one.
-fn scattered(
-    fibre: &FibreParameters,
-    at: DVec3,
-    direction: DVec3,
-    surface: f64,
-    draws: &mut Draws,
-) -> Option<f64> {
+fn scattered(fibre: &FibreParameters, at: DVec3, direction: DVec3, surface: f64, draws: &mut Draws) -> Option<f64> {
     let (radius, rate) = (f64::from(fibre.medulla), f64::from(fibre.scattering));
     let a = (direction.x * direction.x + direction.y * direction.y).max(1e-12);
     let b = at.x * direction.x + at.y * direction.y;

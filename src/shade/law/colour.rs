@@ -3,10 +3,10 @@
 use super::slab::{COLOURS, Slab, Stand};
 use crate::math::solve::least_squares;
 use crate::shade::Real;
-use bytemuck::{Pod, Zeroable};
-use serde::{Deserialize, Serialize};
 use crate::shade::fibre::Fibre;
 use crate::shade::fibre::sample::Sampler;
+use bytemuck::{Pod, Zeroable};
+use serde::{Deserialize, Serialize};
 
 /// Photons per eight absorptions.
 const PHOTONS: usize = 60_000;
@@ -57,7 +57,10 @@ impl Colouring {
         let [f0, f1, f2, f3, f4] = self.factors;
         let upper = R::of32(f2) + u * (R::of32(f3) + u * R::of32(f4));
         let log = R::of32(f0) + u * (R::of32(f1) + u * upper);
-        Worn { absorption: log.min(R::of(LOG_ABSORPTIONS[1])).max(R::of(LOG_ABSORPTIONS[0])).exp_any(), logit: (c / (one - c)).ln() }
+        Worn {
+            absorption: log.min(R::of(LOG_ABSORPTIONS[1])).max(R::of(LOG_ABSORPTIONS[0])).exp_any(),
+            logit: (c / (one - c)).ln(),
+        }
     }
 
     /// Of a fibre, from slabs of it.

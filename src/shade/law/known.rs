@@ -73,7 +73,9 @@ const KNOWN: &str = include_str!("known.json");
 /// Where the table is damaged.
 pub fn known() -> Result<Vec<Known>> {
     serde_json::from_str(KNOWN).map_err(|e| {
-        crate::error::Error::input("the program's table of fibres is damaged").with_found(e).with_expected("its own JSON")
+        crate::error::Error::input("the program's table of fibres is damaged")
+            .with_found(e)
+            .with_expected("its own JSON")
     })
 }
 

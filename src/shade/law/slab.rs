@@ -7,9 +7,9 @@ use super::Place;
 use super::polynomial::{LOWEST_EYE, LOWEST_LIGHT};
 use crate::math::DVec3;
 use crate::math::hash::{combine, unit_f64};
+use crate::shade::Angles;
 use crate::shade::fibre::Fibre;
 use crate::shade::fibre::sample::Sampler;
-use crate::shade::Angles;
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
