@@ -80,7 +80,7 @@ impl<'a> GuardCones<'a> {
     /// The segments that may be seen in a pixel, nearest first.
     pub fn candidates(&self, pixel: &PinholePixel<'_>, out: &mut Vec<Candidate>) {
         out.clear();
-        let segments = self.strands.points_per_strand as u32 - 1;
+        let segments = self.segments();
         self.bvh.visit_beam(&pixel.beam(), |item| {
             let (strand, segment) = (item / segments, item % segments);
             let (ends_m, radius_m) = self.ends(strand, segment);
@@ -162,8 +162,25 @@ impl<'a> GuardCones<'a> {
         (b - a).cross(c - a)
     }
 
+    /// Whether all hair is opaque from root to tip.
+    pub fn is_opaque(&self) -> bool {
+        self.transparency == 0.0
+    }
+
+    /// Calls `visit` with hair and segment of every piece whose box a ray meets between two distances, the nearer boxes first;
+    /// `visit` returns how far to go on.
+    pub fn visit(&self, ray: &DRay, near_m: f64, far_m: f64, mut visit: impl FnMut(u32, u32, f64) -> f64) {
+        let segments = self.segments();
+        self.bvh.visit_nearest(ray, near_m, far_m, |item, far_m| visit(item / segments, item % segments, far_m));
+    }
+
+    /// Segments of each hair.
+    pub fn segments(&self) -> u32 {
+        self.strands.points_per_strand as u32 - 1
+    }
+
     /// Ends of a segment, m, and its radii there, m.
-    fn ends(&self, strand: u32, segment: u32) -> ([DVec3; 2], [f64; 2]) {
+    pub fn ends(&self, strand: u32, segment: u32) -> ([DVec3; 2], [f64; 2]) {
         let points = self.strands.points_of_m(strand as usize);
         let last = (points.len() - 1) as f64;
         let root_radius_m = f64::from(self.strands.root_radius_m[strand as usize]);
