@@ -72,9 +72,14 @@ impl<'a> GuardCones<'a> {
                 Bounds::of(strands.points_m[at..=at + 1].iter().map(|p| p.as_dvec3()), radius_m)
             })
             .collect();
+        Self { bvh: DBvh::new(&bounds), ..Self::unsorted(strands, skin) }
+    }
+
+    /// For who looks hairs up by other means: no pixel has candidates.
+    pub fn unsorted(strands: &'a Strands, skin: &'a Mesh) -> Self {
         let profile = &strands.profile;
         let transparency = f64::from(profile.tip_transparency) / libm::expm1(f64::from(profile.tip_exponent));
-        Self { strands, skin, bvh: DBvh::new(&bounds), transparency }
+        Self { strands, skin, bvh: DBvh::default(), transparency }
     }
 
     /// The segments that may be seen in a pixel, nearest first.
@@ -165,13 +170,6 @@ impl<'a> GuardCones<'a> {
     /// Whether all hair is opaque from root to tip.
     pub fn is_opaque(&self) -> bool {
         self.transparency == 0.0
-    }
-
-    /// Calls `visit` with hair and segment of every piece whose box a ray meets between two distances, the nearer boxes first;
-    /// `visit` returns how far to go on.
-    pub fn visit(&self, ray: &DRay, near_m: f64, far_m: f64, mut visit: impl FnMut(u32, u32, f64) -> f64) {
-        let segments = self.segments();
-        self.bvh.visit_nearest(ray, near_m, far_m, |item, far_m| visit(item / segments, item % segments, far_m));
     }
 
     /// Segments of each hair.

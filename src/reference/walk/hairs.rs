@@ -1,5 +1,8 @@
 //! The first hair along a ray, which may itself begin at a hair.
 
+use super::tree::Tree;
+use crate::data::mesh::Mesh;
+use crate::data::strands::Strands;
 use crate::math::DVec3;
 use crate::reference::bvh::DRay;
 use crate::reference::cone;
@@ -33,30 +36,50 @@ pub enum Wanted {
     Any,
 }
 
-/// A hair that a ray meets between two distances. Hairs in which it begins are not met until they are left.
-pub fn meet(
-    guard: &GuardCones<'_>,
-    ray: &DRay,
-    [near_m, far_m]: [f64; 2],
-    leaving: Option<Leaving>,
-    wanted: Wanted,
-) -> Option<Crossing> {
-    let left_m = leaving.map(|leaving| left_m(guard, ray, near_m, leaving));
-    let mut found: Option<Crossing> = None;
-    guard.visit(ray, near_m, far_m, |strand, segment, far_m| {
-        if !passes(guard, ray, strand, segment) {
-            return far_m;
-        }
-        let Some(crossing) = guard.cross(ray, strand, segment) else { return far_m };
-        let own = leaving.is_some_and(|leaving| leaving.strand == strand)
-            && left_m.is_some_and(|left_m| crossing.enter_m <= left_m);
-        if own || crossing.enter_m < near_m || crossing.enter_m >= far_m {
-            return far_m;
-        }
-        found = Some(crossing);
-        if wanted == Wanted::Any { f64::NEG_INFINITY } else { crossing.enter_m }
-    });
-    found
+/// Guard hairs, and where they are.
+#[derive(Debug)]
+pub struct Hairs<'a> {
+    /// The hairs as round cones.
+    pub cones: GuardCones<'a>,
+    tree: Tree,
+}
+
+impl<'a> Hairs<'a> {
+    /// Of strands on a skin.
+    pub fn new(strands: &'a Strands, skin: &'a Mesh) -> Self {
+        let cones = GuardCones::unsorted(strands, skin);
+        let tree = Tree::new(&cones);
+        Self { cones, tree }
+    }
+
+    /// A hair that a ray meets between two distances. Hairs in which it begins are not met until they are left.
+    pub fn meet(
+        &self,
+        ray: &DRay,
+        [near_m, far_m]: [f64; 2],
+        leaving: Option<Leaving>,
+        wanted: Wanted,
+    ) -> Option<Crossing> {
+        let cones = &self.cones;
+        let left_m = leaving.map(|leaving| left_m(cones, ray, near_m, leaving));
+        let mut found: Option<Crossing> = None;
+        let mut last = None;
+        self.tree.visit(ray, far_m, |strand, segment, far_m| {
+            // A segment lies in several boxes, mostly side by side.
+            if last.replace((strand, segment)) == Some((strand, segment)) || !passes(cones, ray, strand, segment) {
+                return far_m;
+            }
+            let Some(crossing) = cones.cross(ray, strand, segment) else { return far_m };
+            let own = leaving.is_some_and(|leaving| leaving.strand == strand)
+                && left_m.is_some_and(|left_m| crossing.enter_m <= left_m);
+            if own || crossing.enter_m < near_m || crossing.enter_m >= far_m {
+                return far_m;
+            }
+            found = Some(crossing);
+            if wanted == Wanted::Any { f64::NEG_INFINITY } else { crossing.enter_m }
+        });
+        found
+    }
 }
 
 /// Whether a ray's line passes as near to a segment's line as the segment is thick: most of those whose boxes it meets it does

@@ -11,17 +11,17 @@ mod path;
 pub mod scatter;
 mod site;
 mod space;
+mod tree;
 
 pub use noise::Noise;
 pub use site::Fibres;
 
-use super::guard::GuardCones;
 use super::lens::{PinholePixel, Pinhole};
 use super::medium::DMedium;
 use super::shade::Appearance;
 use super::skin::SkinBvh;
 use super::sum::Sum;
-use super::trace::{Seen, Tracer};
+use super::trace::Seen;
 use crate::data::camera::Camera;
 use crate::data::film::Film;
 use crate::error::Result;
@@ -31,6 +31,7 @@ use crate::shade::kajiya_kay::KajiyaKay;
 use crate::shade::lobes::Lobes;
 use crate::stage::projection::Projection;
 use crate::volume::scene::{Lighting, Scene};
+use hairs::Hairs;
 use noise::Spread;
 use path::Walker;
 use rayon::prelude::*;
@@ -113,12 +114,12 @@ pub fn draw_with(
     Projection::new(camera, origin_m, settings.size)?;
     let normals = scene.skin.smooth_normals();
     let skin = SkinBvh::new(scene.skin);
-    let guard = scene.guard.map(|(strands, _)| GuardCones::new(strands, scene.skin));
+    let guard = scene.guard.map(|(strands, _)| Hairs::new(strands, scene.skin));
     // Where all hair is met one by one, there is no volume.
     let medium = scene.undercoat.and_then(|_| DMedium::new(scene, &normals, settings.pattern));
     let slope = scene.undercoat.map_or(0.0, |fibre| libm::tan(f64::from(fibre.shape.jitter_deg).to_radians()));
     let walker = Walker {
-        space: Space { tracer: Tracer { skin: &skin, guard: guard.as_ref(), medium: medium.as_ref() } },
+        space: Space { skin: &skin, guard: guard.as_ref(), medium: medium.as_ref() },
         sites: Sites { scene, normals: &normals, fibres, slope },
         lighting,
         bounces: settings.bounces,

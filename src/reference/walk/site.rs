@@ -103,8 +103,8 @@ impl<'a> Sites<'a> {
     pub fn site(&self, space: &Space<'_>, ray: &DRay, at_m: f64, met: &Met, random: &mut Stream) -> Option<Site<'a>> {
         let (place_m, to_eye) = (ray.origin_m + ray.direction * at_m, -ray.direction);
         Some(match met {
-            Met::Guard(crossing) => self.guard(space.tracer.guard?, crossing, place_m, to_eye),
-            Met::Undercoat(point) => self.undercoat(space.tracer.medium?, point, place_m, to_eye, random),
+            Met::Guard(crossing) => self.guard(&space.guard?.cones, crossing, place_m, to_eye),
+            Met::Undercoat(point) => self.undercoat(space.medium?, point, place_m, to_eye, random),
             Met::Skin(point) => self.skin(point, to_eye),
         })
     }

@@ -1,6 +1,6 @@
 //! What a ray meets next, and what light is left along it.
 
-use super::hairs::{self, Leaving, Wanted};
+use super::hairs::{Hairs, Leaving, Wanted};
 use crate::fur::groom::clump::Nearby;
 use crate::math::hash::{Stream, unit_f64};
 use crate::reference::bvh::DRay;
@@ -8,7 +8,7 @@ use crate::reference::guard::Crossing;
 use crate::reference::interval::MediumInterval;
 use crate::reference::medium::{Counted, DMedium};
 use crate::reference::point::DShellPoint;
-use crate::reference::trace::Tracer;
+use crate::reference::skin::SkinBvh;
 
 /// Optical depth beyond which no light is left.
 const DARK: f64 = 16.0;
@@ -41,8 +41,12 @@ pub struct Scratch {
 /// What rays walk through.
 #[derive(Debug)]
 pub struct Space<'a> {
-    /// Skin, guard hair and undercoat.
-    pub tracer: Tracer<'a>,
+    /// Skin.
+    pub skin: &'a SkinBvh,
+    /// Guard hair.
+    pub guard: Option<&'a Hairs<'a>>,
+    /// Undercoat.
+    pub medium: Option<&'a DMedium<'a>>,
 }
 
 impl Space<'_> {
@@ -55,19 +59,19 @@ impl Space<'_> {
         random: &mut Stream,
         scratch: &mut Scratch,
     ) -> Option<(f64, Met)> {
-        let mut first = self.tracer.skin.meet(ray, OFF_SKIN_M).map(|(at_m, point)| (at_m, Met::Skin(point)));
+        let mut first = self.skin.meet(ray, OFF_SKIN_M).map(|(at_m, point)| (at_m, Met::Skin(point)));
         let far_m = |first: &Option<(f64, Met)>| first.map_or(f64::INFINITY, |(at_m, _)| at_m);
-        if let Some(guard) = self.tracer.guard {
+        if let Some(guard) = self.guard {
             let (mut near_m, mut leaving) = (0.0, leaving);
-            while let Some(crossing) = hairs::meet(guard, ray, [near_m, far_m(&first)], leaving, Wanted::First) {
-                if guard.is_opaque() || unit(random) < guard.opacity(crossing.along_strand) {
+            while let Some(crossing) = guard.meet(ray, [near_m, far_m(&first)], leaving, Wanted::First) {
+                if guard.cones.is_opaque() || unit(random) < guard.cones.opacity(crossing.along_strand) {
                     first = Some((crossing.enter_m, Met::Guard(crossing)));
                     break;
                 }
                 (near_m, leaving) = (crossing.enter_m, Some(crossing.into()));
             }
         }
-        if let Some(medium) = self.tracer.medium
+        if let Some(medium) = self.medium
             && let Some((at_m, point)) = free_flight(medium, ray, far_m(&first), random, scratch)
         {
             first = Some((at_m, Met::Undercoat(point)));
@@ -78,23 +82,23 @@ impl Space<'_> {
     /// The share of light that comes along a ray from `to_m` away.
     pub fn open(&self, ray: &DRay, to_m: f64, leaving: Option<Leaving>) -> f64 {
         let mut left = 1.0;
-        if let Some(guard) = self.tracer.guard {
-            let wanted = if guard.is_opaque() { Wanted::Any } else { Wanted::First };
+        if let Some(guard) = self.guard {
+            let wanted = if guard.cones.is_opaque() { Wanted::Any } else { Wanted::First };
             let (mut near_m, mut leaving) = (0.0, leaving);
-            while let Some(crossing) = hairs::meet(guard, ray, [near_m, to_m], leaving, wanted) {
-                left *= 1.0 - guard.opacity(crossing.along_strand);
-                if left <= 0.0 || guard.is_opaque() {
+            while let Some(crossing) = guard.meet(ray, [near_m, to_m], leaving, wanted) {
+                left *= 1.0 - guard.cones.opacity(crossing.along_strand);
+                if left <= 0.0 || guard.cones.is_opaque() {
                     return 0.0;
                 }
                 (near_m, leaving) = (crossing.enter_m, Some(crossing.into()));
             }
         }
-        if self.tracer.skin.meet(ray, OFF_SKIN_M).is_some_and(|(at_m, _)| at_m < to_m) {
+        if self.skin.meet(ray, OFF_SKIN_M).is_some_and(|(at_m, _)| at_m < to_m) {
             return 0.0;
         }
         let through =
             |medium: &DMedium<'_>| libm::exp(-medium.depth_along(ray, 0.0, to_m, Counted::Undercoat, DARK));
-        left * self.tracer.medium.map_or(1.0, through)
+        left * self.medium.map_or(1.0, through)
     }
 }
 
