@@ -6,8 +6,8 @@ use furrier::data::camera::Camera;
 use furrier::data::light::Directional;
 use furrier::math::{DVec3, Vec3};
 use furrier::preset::Preset;
-use furrier::reference::walk::{Bounces, Fibres, Settings, draw_with};
 use furrier::reference::walk::scatter::Scatter;
+use furrier::reference::walk::{Bounces, Fibres, Ready, Settings, draw_with};
 use furrier::volume::scene::Lighting;
 
 /// Which way the hair of a pelt stands.
@@ -92,7 +92,7 @@ fn square(edge_m: f32) -> String {
 
 /// The radiance of a pelt's middle, 14 mm wide, and its standard error over it.
 pub fn radiance(
-    grown: &Grown,
+    ready: &Ready<'_>,
     fibre: &dyn Scatter,
     view: (f64, f64),
     light: Light,
@@ -119,6 +119,6 @@ pub fn radiance(
     let lighting = Lighting { key: key.into(), fill: Vec::new(), ambient, fill_on_undercoat: true };
     let settings = Settings { paths, bounces, ..Settings::new([1, 1]) };
     let fibres = Fibres { guard: fibre, undercoat: fibre };
-    let walked = draw_with(&grown.scene(), fibres, &lighting, &camera, &settings).unwrap();
+    let walked = draw_with(ready, fibres, &lighting, &camera, &settings).unwrap();
     (walked.film.radiance[0].as_dvec3(), walked.noise.mean)
 }

@@ -44,7 +44,7 @@ impl Scatter for Lobes<f64> {
                 if theta.abs() >= 0.5 * PI {
                     return (at.hair, 0.0);
                 }
-                let azimuth = if choice == TT { PI + self.tt_deviation() * around } else { TAU * random[3] };
+                let azimuth = if choice == TT { PI + around_tt(self) * around } else { TAU * random[3] };
                 if !(0.0..TAU).contains(&azimuth) {
                     return (at.hair, 0.0);
                 }
@@ -52,28 +52,27 @@ impl Scatter for Lobes<f64> {
             }
             None => level(random),
         };
-        (frame.direction(sine, azimuth), self.density(out_rad, sine, azimuth))
+        (frame.direction(sine, azimuth), density(self, out_rad, sine, azimuth))
     }
 }
 
 /// Index of the lobe that goes through the hair.
 const TT: usize = 1;
 
-impl Lobes<f64> {
-    fn tt_deviation(&self) -> f64 {
-        (-0.5 / self.tt_azimuth_scale).sqrt()
-    }
+/// Standard deviation of TT around the hair, rad.
+fn around_tt(lobes: &Lobes<f64>) -> f64 {
+    (-0.5 / lobes.tt_azimuth_scale).sqrt()
+}
 
-    /// How densely directions are sampled, 1/sr.
-    fn density(&self, out_rad: f64, sine: f64, azimuth: f64) -> f64 {
-        let (theta, cosine) = (libm::asin(sine), (1.0 - sine * sine).max(1e-12).sqrt());
-        let lobes = self.lobes.iter().enumerate().map(|(i, lobe)| {
-            let (mean, deviation) = inclination(lobe, out_rad);
-            let around = if i == TT { normal(azimuth - PI, self.tt_deviation()) } else { 1.0 / TAU };
-            normal(theta - mean, deviation) * around / cosine
-        });
-        LOBE * lobes.sum::<f64>() + (1.0 - 3.0 * LOBE) * level_density(sine)
-    }
+/// How densely directions are sampled, 1/sr.
+fn density(lobes: &Lobes<f64>, out_rad: f64, sine: f64, azimuth: f64) -> f64 {
+    let (theta, cosine) = (libm::asin(sine), (1.0 - sine * sine).max(1e-12).sqrt());
+    let each = lobes.lobes.iter().enumerate().map(|(i, lobe)| {
+        let (mean, deviation) = inclination(lobe, out_rad);
+        let around = if i == TT { normal(azimuth - PI, around_tt(lobes)) } else { 1.0 / TAU };
+        normal(theta - mean, deviation) * around / cosine
+    });
+    LOBE * each.sum::<f64>() + (1.0 - 3.0 * LOBE) * level_density(sine)
 }
 
 /// Mean and standard deviation of the light's inclination in a lobe, rad.

@@ -26,6 +26,7 @@ use crate::data::camera::Camera;
 use crate::data::film::Film;
 use crate::error::Result;
 use crate::fur::undercoat::Pattern;
+use crate::math::{DVec3, Vec3};
 use crate::math::hash::{Stream, combine, unit_f64};
 use crate::shade::kajiya_kay::KajiyaKay;
 use crate::shade::lobes::Lobes;
@@ -65,14 +66,12 @@ pub struct Settings {
     pub bounces: Bounces,
     /// Chooses the paths.
     pub seed: u64,
-    /// Pattern of the undercoat's density.
-    pub pattern: Option<Pattern>,
 }
 
 impl Settings {
-    /// All scatterings, with the renderer's own pattern.
+    /// All scatterings.
     pub fn new(size: [usize; 2]) -> Self {
-        Self { size, paths: super::LINES as usize, bounces: Bounces::All, seed: 0, pattern: Some(Pattern::default()) }
+        Self { size, paths: super::LINES as usize, bounces: Bounces::All, seed: 0 }
     }
 }
 
@@ -88,6 +87,30 @@ pub struct Walked {
 /// Paths that one thread follows at a time.
 const BLOCK: usize = 256;
 
+/// A scene made ready for walks.
+#[derive(Debug)]
+pub struct Ready<'a> {
+    scene: &'a Scene<'a>,
+    normals: &'a [Vec3],
+    skin: SkinBvh,
+    guard: Option<Hairs<'a>>,
+    medium: Option<DMedium<'a>>,
+}
+
+impl<'a> Ready<'a> {
+    /// Sorts a scene's hair and skin; `normals` are the skin's smooth ones.
+    pub fn new(scene: &'a Scene<'a>, normals: &'a [Vec3], pattern: Option<Pattern>) -> Self {
+        Self {
+            scene,
+            normals,
+            skin: SkinBvh::new(scene.skin),
+            guard: scene.guard.map(|(strands, _)| Hairs::new(strands, scene.skin)),
+            // Where all hair is met one by one, there is no volume.
+            medium: scene.undercoat.and_then(|_| DMedium::new(scene, normals, pattern)),
+        }
+    }
+}
+
 /// Renders a picture with hair that scatters by the scene's own formulas.
 ///
 /// # Errors
@@ -96,7 +119,9 @@ pub fn draw(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &
     let hair = &scene.scattering;
     let guard = Lobes::<f64>::new(&hair.guard)?;
     let undercoat = KajiyaKay::<f64>::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent);
-    draw_with(scene, Fibres { guard: &guard, undercoat: &undercoat }, lighting, camera, settings)
+    let normals = scene.skin.smooth_normals();
+    let ready = Ready::new(scene, &normals, Some(Pattern::default()));
+    draw_with(&ready, Fibres { guard: &guard, undercoat: &undercoat }, lighting, camera, settings)
 }
 
 /// Renders a picture with hair that scatters as `fibres` do.
@@ -104,23 +129,19 @@ pub fn draw(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &
 /// # Errors
 /// Names what keeps the camera from looking anywhere.
 pub fn draw_with(
-    scene: &Scene<'_>,
+    ready: &Ready<'_>,
     fibres: Fibres<'_>,
     lighting: &Lighting,
     camera: &Camera,
     settings: &Settings,
 ) -> Result<Walked> {
+    let Ready { scene, normals, skin, guard, medium } = ready;
     let origin_m = scene.skin.origin_m;
     Projection::new(camera, origin_m, settings.size)?;
-    let normals = scene.skin.smooth_normals();
-    let skin = SkinBvh::new(scene.skin);
-    let guard = scene.guard.map(|(strands, _)| Hairs::new(strands, scene.skin));
-    // Where all hair is met one by one, there is no volume.
-    let medium = scene.undercoat.and_then(|_| DMedium::new(scene, &normals, settings.pattern));
     let slope = scene.undercoat.map_or(0.0, |fibre| libm::tan(f64::from(fibre.shape.jitter_deg).to_radians()));
     let walker = Walker {
-        space: Space { skin: &skin, guard: guard.as_ref(), medium: medium.as_ref() },
-        sites: Sites { scene, normals: &normals, fibres, slope },
+        space: Space { skin, guard: guard.as_ref(), medium: medium.as_ref() },
+        sites: Sites { scene, normals, fibres, slope },
         lighting,
         bounces: settings.bounces,
     };
@@ -166,7 +187,7 @@ impl Walker<'_> {
             let mut random = Stream::new(combine(key, 1 + i as u64));
             let [x, y] = spot(i, key);
             let ray = pixel.row(y).ray(x);
-            let mut radiance = crate::math::DVec3::ZERO;
+            let mut radiance = DVec3::ZERO;
             if let Some((at_m, met, site)) = self.first(&ray, &mut random, scratch) {
                 let (albedo, tangent, normal) = (site.colour, site.tangent, site.normal);
                 radiance = self.radiance(site, &mut random, scratch);
