@@ -16,7 +16,7 @@ mod tree;
 pub use noise::Noise;
 pub use site::Fibres;
 
-use super::lens::{PinholePixel, Pinhole};
+use super::lens::{Pinhole, PinholePixel};
 use super::medium::DMedium;
 use super::shade::Appearance;
 use super::skin::SkinBvh;
@@ -26,8 +26,8 @@ use crate::data::camera::Camera;
 use crate::data::film::Film;
 use crate::error::Result;
 use crate::fur::undercoat::Pattern;
-use crate::math::{DVec3, Vec3};
 use crate::math::hash::{Stream, combine, unit_f64};
+use crate::math::{DVec3, Vec3};
 use crate::shade::kajiya_kay::KajiyaKay;
 use crate::shade::lobes::Lobes;
 use crate::stage::projection::Projection;

@@ -24,9 +24,14 @@ pub struct Fibres<'a> {
 
 /// What scatters at a site.
 enum Kind<'a> {
-    Hair { fibre: &'a dyn Scatter, meeting: Meeting },
+    Hair {
+        fibre: &'a dyn Scatter,
+        meeting: Meeting,
+    },
     /// Lambert's law on both sides. `face` is the side of the triangle that the eye sees: nothing comes through it.
-    Skin { face: DVec3 },
+    Skin {
+        face: DVec3,
+    },
 }
 
 /// Where light is scattered.
@@ -79,7 +84,8 @@ impl Site<'_> {
                 let (radius, angle) = (random[0].sqrt(), TAU * random[1]);
                 let cosine = (1.0 - random[0]).sqrt();
                 let (x, y) = self.normal.any_orthonormal_pair();
-                let direction = x * (radius * libm::cos(angle)) + y * (radius * libm::sin(angle)) + self.normal * cosine;
+                let direction =
+                    x * (radius * libm::cos(angle)) + y * (radius * libm::sin(angle)) + self.normal * cosine;
                 (direction, FRAC_1_PI * cosine)
             }
         }

@@ -96,8 +96,7 @@ impl Space<'_> {
         if self.skin.meet(ray, OFF_SKIN_M).is_some_and(|(at_m, _)| at_m < to_m) {
             return 0.0;
         }
-        let through =
-            |medium: &DMedium<'_>| libm::exp(-medium.depth_along(ray, 0.0, to_m, Counted::Undercoat, DARK));
+        let through = |medium: &DMedium<'_>| libm::exp(-medium.depth_along(ray, 0.0, to_m, Counted::Undercoat, DARK));
         left * self.medium.map_or(1.0, through)
     }
 }

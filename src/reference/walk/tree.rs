@@ -152,8 +152,7 @@ fn halve(pieces: &mut [Piece], begin: usize, nodes: &mut [Node]) -> [Vec3A; 2] {
     if count <= LEAF {
         let low = pieces.iter().fold(Vec3A::INFINITY, |low, piece| low.min(piece.low_m));
         let high = pieces.iter().fold(Vec3A::NEG_INFINITY, |high, piece| high.max(piece.high_m));
-        nodes[0] =
-            Node { low_m: low.to_array(), first: begin as u32, high_m: high.to_array(), count: count as u32 };
+        nodes[0] = Node { low_m: low.to_array(), first: begin as u32, high_m: high.to_array(), count: count as u32 };
         return [low, high];
     }
     let middle = |piece: &Piece| piece.low_m + piece.high_m;
