@@ -67,11 +67,8 @@ impl Chiang {
         let (mut value, mut density) = (DVec3::ZERO, 0.0);
         for way in 0..WAYS {
             let along = longitudinal(self.tilted(way, view.sine), sine, self.variances[way]);
-            let around = if way < 3 {
-                trimmed_logistic(azimuth - turn(way, at.across, inside), self.scale)
-            } else {
-                1.0 / TAU
-            };
+            let around =
+                if way < 3 { trimmed_logistic(azimuth - turn(way, at.across, inside), self.scale) } else { 1.0 / TAU };
             value += ways[way] * (along * around);
             density += shares[way] * along * around;
         }

@@ -4,6 +4,7 @@ use furrier::bake::picture::{Grown, Only, PictureRequest};
 use furrier::bake::units::Units;
 use furrier::data::camera::Camera;
 use furrier::data::light::Directional;
+use furrier::data::strands::Strands;
 use furrier::math::{DVec3, Vec3};
 use furrier::preset::Preset;
 use furrier::reference::walk::scatter::Scatter;
@@ -70,6 +71,36 @@ undercoat = [[1.0,1.0,1.0],[1.0,1.0,1.0],[1.0,1.0,1.0]]\nvariation = 0.0\nskin =
     .unwrap()
 }
 
+/// Hairs as natural cubic splines through their points, each piece cut into `pieces`: what the other path tracer was given.
+pub fn smooth(strands: &Strands, pieces: usize) -> Strands {
+    let n = strands.points_per_strand;
+    let mut smooth = Strands { points_per_strand: (n - 1) * pieces + 1, points_m: Vec::new(), ..strands.clone() };
+    for hair in 0..strands.len() {
+        let y: Vec<DVec3> = strands.points_of_m(hair).iter().map(|p| p.as_dvec3()).collect();
+        // Second derivatives: M₋ + 4 M + M₊ = 6 (y₋ − 2y + y₊), none at the ends.
+        let (mut c, mut d) = (vec![0.0; n], vec![DVec3::ZERO; n]);
+        for i in 1..n - 1 {
+            let pivot = 4.0 - c[i - 1];
+            c[i] = 1.0 / pivot;
+            d[i] = (6.0 * (y[i - 1] - 2.0 * y[i] + y[i + 1]) - d[i - 1]) / pivot;
+        }
+        let mut m = vec![DVec3::ZERO; n];
+        for i in (1..n - 1).rev() {
+            m[i] = d[i] - c[i] * m[i + 1];
+        }
+        for i in 0..n - 1 {
+            for piece in 0..pieces {
+                let t = piece as f64 / pieces as f64;
+                let (u, cube) = (1.0 - t, |t: f64| (t * t * t - t) / 6.0);
+                let point = y[i] * u + y[i + 1] * t + m[i] * cube(u) + m[i + 1] * cube(t);
+                smooth.points_m.push(point.as_vec3());
+            }
+        }
+        smooth.points_m.push(y[n - 1].as_vec3());
+    }
+    smooth
+}
+
 /// A level square of 16 × 16 quads.
 fn square(edge_m: f32) -> String {
     let mut obj = String::new();
@@ -80,7 +111,10 @@ fn square(edge_m: f32) -> String {
         }
     }
     obj += "vn 0 1 0\n";
-    let at = |i: usize, j: usize| { let n = j * 17 + i + 1; format!("{n}/{n}/1") };
+    let at = |i: usize, j: usize| {
+        let n = j * 17 + i + 1;
+        format!("{n}/{n}/1")
+    };
     for j in 0..16 {
         for i in 0..16 {
             let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
@@ -102,12 +136,8 @@ pub fn radiance(
     let target = DVec3::new(0.0, 0.02, 0.0);
     let to_eye = direction(view.0, view.1);
     let up = if view.0 < 1.0 { DVec3::Z } else { DVec3::Y };
-    let camera = Camera {
-        eye: (target + to_eye * 0.8).to_array(),
-        target: target.to_array(),
-        up: up.to_array(),
-        vfov_deg: 1.0,
-    };
+    let camera =
+        Camera { eye: (target + to_eye * 0.8).to_array(), target: target.to_array(), up: up.to_array(), vfov_deg: 1.0 };
     let dark = Directional { to_light: Vec3::Y, irradiance: Vec3::ZERO };
     let key = match light {
         Light::From(zenith, azimuth) => {

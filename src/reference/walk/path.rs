@@ -14,7 +14,7 @@ use crate::volume::scene::Lighting;
 const SURE: u32 = 3;
 
 /// How often a path goes on at most: between mirrors and white walls it ends some day.
-const MOST: f64 = 0.995;
+const MOST: f64 = 0.9995;
 
 /// Follows paths.
 pub struct Walker<'a> {
