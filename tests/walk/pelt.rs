@@ -71,7 +71,7 @@ undercoat = [[1.0,1.0,1.0],[1.0,1.0,1.0],[1.0,1.0,1.0]]\nvariation = 0.0\nskin =
     .unwrap()
 }
 
-/// Hairs as natural cubic splines through their points, each piece cut into `pieces`: what the other path tracer was given.
+/// Hairs as natural cubic splines through their points, each segment cut into `pieces`: what the other path tracer was given.
 pub fn smooth(strands: &Strands, pieces: usize) -> Strands {
     let n = strands.points_per_strand;
     let mut smooth = Strands { points_per_strand: (n - 1) * pieces + 1, points_m: Vec::new(), ..strands.clone() };
