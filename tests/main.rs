@@ -69,6 +69,7 @@ mod units;
 mod upright;
 mod validator;
 mod viewer;
+mod walk;
 mod wild_skins;
 mod witness;
 mod xatlas;

@@ -189,3 +189,24 @@ fn a_lens_blurs_what_is_not_in_its_focus() {
         folder.render("no.png", options).code(2);
     }
 }
+
+#[test]
+fn a_reference_with_bounces_tells_its_noise() {
+    let folder = Folder::new();
+    let paths = ["--quality", "reference", "--bounces", "2", "--lines", "2", "--report"];
+    let report = folder.path("report.json");
+    folder.render("walk.exr", &[&paths[..], &[report.to_str().unwrap()]].concat()).success();
+    let report: serde_json::Value = serde_json::from_slice(&std::fs::read(report).unwrap()).unwrap();
+    let noise = |name: &str| report["noise"][name].as_f64().unwrap();
+    assert!(noise("mean") > 0.0 && noise("mean") < 0.1 && noise("median_pixel") > noise("mean"), "{report}");
+    let walked = layers(&folder.path("walk.exr"));
+    let usual = folder.layers("usual.exr", &["--quality", "reference", "--lines", "2"]);
+    for part in ["A", "guard", "undercoat"] {
+        if let (Some(walked), Some(usual)) = (walked.get(part), usual.get(part)) {
+            assert!((mean(walked) - mean(usual)).abs() < 0.01, "{part}: {} and {}", mean(walked), mean(usual));
+        }
+    }
+    for options in [&["--bounces", "2"][..], &["--quality", "reference", "--bounces", "0"]] {
+        folder.render("none.exr", options).failure();
+    }
+}

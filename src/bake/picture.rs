@@ -19,6 +19,7 @@ use crate::hybrid::{self, Picture, Settings};
 use crate::math::{DVec3, Vec3};
 use crate::preset::Preset;
 use crate::reference;
+use crate::reference::walk::{self, Walked};
 use crate::volume::scene::{HairScattering, Lighting, Scene};
 
 /// The finest that what is painted is told apart in undercoat, in parts of what is furred: hair carries a colour further than that
@@ -179,6 +180,14 @@ impl Grown {
     /// As [`reference::draw`].
     pub fn reference(&self, lighting: &Lighting, camera: &Camera, settings: &reference::Settings) -> Result<Film> {
         reference::draw(&self.scene(), lighting, camera, settings)
+    }
+
+    /// Follows light through the same hair from scattering to scattering.
+    ///
+    /// # Errors
+    /// As [`walk::draw`].
+    pub fn walk(&self, lighting: &Lighting, camera: &Camera, settings: &walk::Settings) -> Result<Walked> {
+        walk::draw(&self.scene(), lighting, camera, settings)
     }
 }
 

@@ -16,6 +16,7 @@ use crate::math::DVec3;
 use crate::metrics::timing::{Report, Steps};
 use crate::preset::Preset;
 use crate::reference;
+use crate::reference::walk::{self, Bounces, Noise, Walked};
 use crate::stage::defocus::{self, Lens};
 use crate::stage::file::Format;
 use crate::stage::options::Options;
@@ -24,6 +25,7 @@ use crate::volume::scene::Lighting;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::time::Instant;
 
 /// Draw fur hair by hair, over an undercoat followed as a volume
@@ -37,6 +39,7 @@ Examples:
   furrier render bunny.glb -o close.png --orbit 30,15,0.4 --f-number 2.8
   furrier render sample:creature -o walk.png --pose walk@0.25
   furrier render bunny.glb -o bunny.png --export-strands bunny.usda
+  furrier render bunny.glb -o truth.exr --quality reference --bounces all --lines 256
 
 An .exr holds every layer: radiance, alpha, distance, normal, tangent, albedo, and the parts of guard hair and undercoat.")]
 pub struct Render {
@@ -68,10 +71,15 @@ pub struct Render {
     /// How much work to spend
     #[arg(long, value_enum, default_value = "preview")]
     quality: Quality,
-    /// Lines per pixel of a reference, each looked at whole; where they differ, up to five times as many
+    /// Follow light from hair to hair in a reference, through so many scatterings at most or through all: an unbiased picture with
+    /// noise, which the report tells
+    #[arg(long, value_name = "N|all")]
+    bounces: Option<BouncesName>,
+    /// Lines per pixel of a reference, each looked at whole; where they differ, up to five times as many. With --bounces, the
+    /// number of paths per pixel
     #[arg(long, value_name = "N", default_value_t = reference::LINES, value_parser = clap::value_parser!(u32).range(1..))]
     lines: u32,
-    /// Where the lines of a reference lie: two pictures of different numbers tell its noise
+    /// Where the lines or paths of a reference lie: two pictures of different numbers tell its noise
     #[arg(long, value_name = "N", default_value_t = 0)]
     ray_seed: u64,
     /// Which hair to draw
@@ -139,6 +147,7 @@ impl Render {
         }
         let stage = Options { environment_on_undercoat: self.env_on_undercoat, ..self.stage.options()? };
         let size = stage.size.map(|n| n as usize);
+        self.check_bounces()?;
         let device = self.device.parse::<Device>()?;
         let grown = Grown::new(&self.request()?)?;
         grown.notes.iter().for_each(|note| console.note(note));
@@ -146,8 +155,14 @@ impl Render {
         let lighting = Lighting::new(&stage.lit(&grown.subject, &camera)?);
         lighting.notes(grown.scene().skin).iter().for_each(|note| console.note(note));
         self.check_lens()?;
-        let mut drawn = match self.quality {
-            Quality::Reference => self.reference(&grown, &lighting, &camera, size)?,
+        let mut noise = None;
+        let mut drawn = match (self.quality, self.bounces) {
+            (Quality::Reference, Some(bounces)) => {
+                let (drawn, found) = self.walk(&grown, &lighting, &camera, size, bounces.0)?;
+                noise = Some(found);
+                drawn
+            }
+            (Quality::Reference, None) => self.reference(&grown, &lighting, &camera, size)?,
             _ => {
                 let layers = match (format, self.f_number) {
                     (Format::Exr, _) => Layers::All,
@@ -166,7 +181,7 @@ impl Render {
             let name = name.strip_prefix("sample:").unwrap_or(name);
             output::bytes(file, &strands::encode(&grown.export(name), format)?)?;
         }
-        let report = report(&drawn);
+        let report = report(&drawn, noise);
         if let Some(file) = &self.report {
             output::json(file, &report)?;
         }
@@ -174,7 +189,10 @@ impl Render {
             let ms = report["total_ms"].as_f64().unwrap_or(0.0);
             let [width, height] = size;
             let device = &drawn.device;
-            writeln!(out, "{}: {width} × {height}, drawn by {device} in {:.1} s", self.output.display(), ms * 1e-3)
+            writeln!(out, "{}: {width} × {height}, drawn by {device} in {:.1} s", self.output.display(), ms * 1e-3)?;
+            let Some(Noise { mean, median_pixel }) = noise else { return Ok(()) };
+            let [mean, median] = [mean, median_pixel].map(|error| 100.0 * error);
+            writeln!(out, "standard error: {mean:.3} % of the mean luminance, {median:.1} % of a pixel's (median)")
         })
     }
 
@@ -234,6 +252,35 @@ impl Render {
         Ok(Drawn { picture, device: "cpu".into(), notes: Vec::new() })
     }
 
+    fn check_bounces(&self) -> Result<()> {
+        match (self.quality, self.bounces) {
+            (Quality::Preview | Quality::Final, Some(_)) => {
+                Err(Error::usage("only a reference follows light from hair to hair")
+                    .with_field("--bounces")
+                    .with_hint("add `--quality reference`"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The picture by paths, and its noise.
+    fn walk(
+        &self,
+        grown: &Grown,
+        lighting: &Lighting,
+        camera: &Camera,
+        size: [usize; 2],
+        bounces: Bounces,
+    ) -> Result<(Drawn, Noise)> {
+        let start = Instant::now();
+        let settings = walk::Settings { size, paths: self.lines as usize, bounces, seed: self.ray_seed };
+        let Walked { film, noise } = grown.walk(lighting, camera, &settings)?;
+        let mut steps = Steps::default();
+        steps.add_since("paths", start, 0);
+        let picture = Picture { film, steps, ..Picture::default() };
+        Ok((Drawn { picture, device: "cpu".into(), notes: Vec::new() }, noise))
+    }
+
     fn settings_of(&self, size: [usize; 2]) -> Settings {
         let mut settings = match self.quality {
             Quality::Final => Settings::best(size),
@@ -258,8 +305,22 @@ fn pose(text: &str) -> Result<(String, f64)> {
     })
 }
 
-/// The rows of Andersen et al. 2016, Table 1.
-fn report(drawn: &Drawn) -> Value {
+/// How many scatterings are followed, as a command line says it.
+#[derive(Clone, Copy, Debug)]
+struct BouncesName(Bounces);
+
+impl FromStr for BouncesName {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> std::result::Result<Self, Self::Err> {
+        let number = || text.parse().ok().filter(|&most: &u32| most > 0).map(Bounces::Most);
+        let bounces = if text == "all" { Some(Bounces::All) } else { number() };
+        bounces.map(Self).ok_or("expected a number from 1 on, or all")
+    }
+}
+
+/// The rows of Andersen et al. 2016, Table 1; `noise` of a picture by paths.
+fn report(drawn: &Drawn, noise: Option<Noise>) -> Value {
     let picture = &drawn.picture;
     let counts = &picture.counts;
     let mut report = Report::new(&drawn.device, picture.steps.clone(), picture.steps.total_ms());
@@ -272,5 +333,9 @@ fn report(drawn: &Drawn) -> Value {
     ] {
         report.count(name, count);
     }
-    output::report(&report, json!({ "notes": drawn.notes, "coverage": picture.film.coverage() }))
+    let mut more = json!({ "notes": drawn.notes, "coverage": picture.film.coverage() });
+    if let Some(Noise { mean, median_pixel }) = noise {
+        more["noise"] = json!({ "mean": mean, "median_pixel": median_pixel });
+    }
+    output::report(&report, more)
 }

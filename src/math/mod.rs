@@ -13,7 +13,7 @@ pub mod table;
 
 pub use glam::{
     DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4, I64Vec3, IVec2, Mat2, Mat3, Mat4, Quat, UVec2, UVec3, Vec2,
-    Vec3, Vec4,
+    Vec3, Vec3A, Vec4,
 };
 
 /// Any unit vector at a right angle to the unit vector `n`, and the third axis: (t, b) with t × b = n.

@@ -126,6 +126,39 @@ impl DBvh {
         self.descend(far, meets, |item, far| *far = visit(item, *far));
     }
 
+    /// As [`Self::visit`], boxes that begin nearer first: what comes first along the ray cuts off the rest soon.
+    pub fn visit_nearest(&self, ray: &DRay, near: f64, far: f64, mut visit: impl FnMut(u32, f64) -> f64) {
+        let enter = |index: usize, far: f64| {
+            self.nodes[index].bounds.span(ray, near, far).map_or(f64::INFINITY, |[enter, _]| enter)
+        };
+        let mut far = far;
+        let mut stack = [(0_u32, 0.0); 64];
+        let mut depth = usize::from(!self.nodes.is_empty());
+        while depth > 0 {
+            depth -= 1;
+            let (index, enter_m) = stack[depth];
+            if enter_m > far {
+                continue;
+            }
+            let index = index as usize;
+            let node = &self.nodes[index];
+            if node.count > 0 {
+                for &item in &self.items[node.first as usize..(node.first + node.count) as usize] {
+                    far = visit(item, far);
+                }
+                continue;
+            }
+            let children = [index + 1, index + node.first as usize].map(|child| (child as u32, enter(child, far)));
+            let nearer = usize::from(children[1].1 < children[0].1);
+            for child in [children[1 - nearer], children[nearer]] {
+                if child.1 < f64::INFINITY {
+                    stack[depth] = child;
+                    depth += 1;
+                }
+            }
+        }
+    }
+
     /// Calls `visit` for every item in leaves whose boxes a beam meets.
     pub fn visit_beam(&self, beam: &Beam, mut visit: impl FnMut(u32)) {
         self.descend((), |bounds, ()| beam.meets(bounds), |item, ()| visit(item));

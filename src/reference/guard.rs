@@ -72,15 +72,20 @@ impl<'a> GuardCones<'a> {
                 Bounds::of(strands.points_m[at..=at + 1].iter().map(|p| p.as_dvec3()), radius_m)
             })
             .collect();
+        Self { bvh: DBvh::new(&bounds), ..Self::unsorted(strands, skin) }
+    }
+
+    /// For who looks hairs up by other means: no pixel has candidates.
+    pub fn unsorted(strands: &'a Strands, skin: &'a Mesh) -> Self {
         let profile = &strands.profile;
         let transparency = f64::from(profile.tip_transparency) / libm::expm1(f64::from(profile.tip_exponent));
-        Self { strands, skin, bvh: DBvh::new(&bounds), transparency }
+        Self { strands, skin, bvh: DBvh::default(), transparency }
     }
 
     /// The segments that may be seen in a pixel, nearest first.
     pub fn candidates(&self, pixel: &PinholePixel<'_>, out: &mut Vec<Candidate>) {
         out.clear();
-        let segments = self.strands.points_per_strand as u32 - 1;
+        let segments = self.segments();
         self.bvh.visit_beam(&pixel.beam(), |item| {
             let (strand, segment) = (item / segments, item % segments);
             let (ends_m, radius_m) = self.ends(strand, segment);
@@ -162,8 +167,18 @@ impl<'a> GuardCones<'a> {
         (b - a).cross(c - a)
     }
 
+    /// Whether all hair is opaque from root to tip.
+    pub fn is_opaque(&self) -> bool {
+        self.transparency == 0.0
+    }
+
+    /// Segments of each hair.
+    pub fn segments(&self) -> u32 {
+        self.strands.points_per_strand as u32 - 1
+    }
+
     /// Ends of a segment, m, and its radii there, m.
-    fn ends(&self, strand: u32, segment: u32) -> ([DVec3; 2], [f64; 2]) {
+    pub fn ends(&self, strand: u32, segment: u32) -> ([DVec3; 2], [f64; 2]) {
         let points = self.strands.points_of_m(strand as usize);
         let last = (points.len() - 1) as f64;
         let root_radius_m = f64::from(self.strands.root_radius_m[strand as usize]);

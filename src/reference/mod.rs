@@ -13,7 +13,7 @@ pub mod guard;
 pub mod interval;
 pub mod kind;
 pub mod lens;
-mod light;
+pub mod light;
 pub mod line;
 pub mod medium;
 pub mod point;
@@ -23,6 +23,7 @@ pub mod sight;
 pub mod skin;
 pub mod sum;
 pub mod trace;
+pub mod walk;
 
 use crate::data::camera::Camera;
 use crate::data::film::Film;

@@ -72,6 +72,16 @@ impl Sum {
         join(&mut self.lines, other.lines);
     }
 
+    /// Adds other lines of the pixel, each of which counts as much.
+    pub fn add_all(&mut self, other: &Self) {
+        self.lines += other.lines;
+        self.add(&other.appearance, 1.0);
+        self.depth_m += other.depth_m;
+        self.guard += other.guard;
+        self.undercoat += other.undercoat;
+        self.skin += other.skin;
+    }
+
     /// Becomes a pixel of a film.
     pub fn into_film(self, film: &mut Film, i: usize) {
         let met = self.guard + self.undercoat + self.skin;
