@@ -37,11 +37,10 @@ const FAR_TAPS: f32 = 4.0;
 
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
-    // Within the triangle, with offset and normal, or a place beyond an outline would stand behind the body, in its shadow.
-    @location(0) @interpolate(perspective, centroid) position_m: vec3<f32>,
+    @location(0) position_m: vec3<f32>,
     @location(1) uv: vec2<f32>,
-    @location(2) @interpolate(perspective, centroid) offset_m: vec3<f32>,
-    @location(3) @interpolate(perspective, centroid) normal: vec3<f32>,
+    @location(2) offset_m: vec3<f32>,
+    @location(3) normal: vec3<f32>,
     @location(4) tint: vec4<f32>,
     // What one metre of the tile becomes on this triangle at this height.
     @location(5) @interpolate(flat) x_axis: vec3<f32>,
