@@ -28,10 +28,9 @@ use crate::error::Result;
 use crate::fur::undercoat::Pattern;
 use crate::math::hash::{Stream, combine, unit_f64};
 use crate::math::{DVec3, Vec3};
-use crate::shade::kajiya_kay::KajiyaKay;
-use crate::shade::lobes::Lobes;
 use crate::stage::projection::Projection;
 use crate::volume::scene::{Lighting, Scene};
+use formulas::FibreWalk;
 use hairs::Hairs;
 use noise::Spread;
 use path::Walker;
@@ -114,11 +113,9 @@ impl<'a> Ready<'a> {
 /// Renders a picture with hair that scatters by the scene's own formulas.
 ///
 /// # Errors
-/// Names what keeps the camera from looking anywhere, or a scattering parameter out of range.
+/// Names what keeps the camera from looking anywhere.
 pub fn draw(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Walked> {
-    let hair = &scene.scattering;
-    let guard = Lobes::<f64>::new(&hair.guard)?;
-    let undercoat = KajiyaKay::<f64>::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent);
+    let [guard, undercoat] = [&scene.scattering.guard, &scene.scattering.undercoat].map(FibreWalk::new);
     let normals = scene.skin.smooth_normals();
     let ready = Ready::new(scene, &normals, Some(Pattern::default()));
     draw_with(&ready, Fibres { guard: &guard, undercoat: &undercoat }, lighting, camera, settings)

@@ -1,6 +1,5 @@
 //! A place where light is scattered: hair or skin, its colour, and how it scatters.
 
-use super::formulas::normals;
 use super::hairs::Leaving;
 use super::scatter::{Meeting, Scatter};
 use super::space::{Met, Space, unit};
@@ -195,4 +194,11 @@ impl<'a> Sites<'a> {
             normal: mean(self.normals).normalize_or(outside) * side,
         }
     }
+}
+
+/// Two normal numbers (Box and Muller 1958).
+fn normals(random: [f64; 2]) -> [f64; 2] {
+    let radius = (-2.0 * libm::log(1.0 - random[0])).sqrt();
+    let angle = std::f64::consts::TAU * random[1];
+    [radius * libm::cos(angle), radius * libm::sin(angle)]
 }
