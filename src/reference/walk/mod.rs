@@ -115,10 +115,19 @@ impl<'a> Ready<'a> {
 /// # Errors
 /// Names what keeps the camera from looking anywhere.
 pub fn draw(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Walked> {
-    let [guard, undercoat] = [&scene.scattering.guard, &scene.scattering.undercoat].map(FibreWalk::new);
     let normals = scene.skin.smooth_normals();
     let ready = Ready::new(scene, &normals, Some(Pattern::default()));
-    draw_with(&ready, Fibres { guard: &guard, undercoat: &undercoat }, lighting, camera, settings)
+    draw_ready(&ready, lighting, camera, settings)
+}
+
+/// The same of a scene made ready before.
+///
+/// # Errors
+/// Names what keeps the camera from looking anywhere.
+pub fn draw_ready(ready: &Ready<'_>, lighting: &Lighting, camera: &Camera, settings: &Settings) -> Result<Walked> {
+    let hair = ready.scene.scattering;
+    let [guard, undercoat] = [&hair.guard, &hair.undercoat].map(FibreWalk::new);
+    draw_with(ready, Fibres { guard: &guard, undercoat: &undercoat }, lighting, camera, settings)
 }
 
 /// Renders a picture with hair that scatters as `fibres` do.
