@@ -39,6 +39,6 @@ fn shadow(
         let stepping = Stepping(SHADOW_STEP_DEPTH * scale, SHADOW_STEP_LAYERS * min(scale, MOST_STEP_LENGTHENING));
         depth += advance(&walk, origin_m, to_light, 1e30, stepping).depth;
     }
-    depth += mean_depths(triangle, b, t * scene.undercoat_kind.top_m / tips_m()).y;
+    depth += mean_depths(triangle, b, t * scene.undercoat_top_m / tips_m()).y;
     write_byte(first * (scene.layers + 1u) + level * corners_of(d) + corner, code_value(depth));
 }

@@ -22,7 +22,7 @@ fn step_at(first: u32, i: u32) -> vec3<f32> {
 // Optical depth towards the key light: a hair is shadowed as the column over its own root is at its height, in the mean, but
 // beside an open border, where clumps are seen from their sides, with its clumps.
 fn depth_of(triangle: u32, b: vec3<f32>, height_m: f32, length: f32) -> f32 {
-    let t = height_m / max(scene.undercoat_kind.top_m * length, 1e-30);
+    let t = height_m / max(scene.undercoat_top_m * length, 1e-30);
     let root = triangles[triangle];
     if (root.traits & AT_BORDER) != 0u && root.shadow_at != NOTHING && t <= 1.0 {
         return key_depth(triangle, b, max(t, 0.0));
@@ -57,7 +57,7 @@ fn log_radiance_at(strand: Strand, first: u32, i: u32) -> vec3<f32> {
     var sum = vec3(0.0);
     if any(scene.ambient != vec3(0.0)) {
         let eye_hair = clamp(dot(along, to_eye), -1.0, 1.0);
-        sum = scene.ambient * lit_by_sky(0u, above, eye_hair, hair_normal, eye_normal, worn);
+        sum = scene.ambient * lit_by_sky(0u, above, eye_hair, hair_normal, eye_normal, worn, crowding);
     }
     for (var k = 0u; k < scene.light_count; k++) {
         let light = light_at(lights[k], point_m);

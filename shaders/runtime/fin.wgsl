@@ -140,7 +140,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let above = -log(max(medium.a, LEAST_CLEAR)) * present;
     var radiance = vec3(0.0);
     if any(view.ambient != vec3(0.0)) {
-        radiance = view.ambient * lit_by_sky(look, above, dot(tangent, to_eye), hair_normal, eye_normal, worn);
+        radiance = view.ambient * lit_by_sky(look, above, dot(tangent, to_eye), hair_normal, eye_normal, worn, crowding);
     }
     let root_m = in.position_m - (1.0 - in.uv.y) * in.offset_m;
     for (var i = 0u; i < view.light_count; i++) {

@@ -260,7 +260,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let above = min(-log(max(surface.a, LEAST_CLEAR)), DEEPEST_HAIR) * present;
     var radiance = vec3(0.0);
     if any(view.ambient != vec3(0.0)) {
-        radiance = view.ambient * lit_by_sky(look.look, above, dot(tangent, to_eye), hair_normal, eye_normal, worn);
+        radiance = view.ambient * lit_by_sky(look.look, above, dot(tangent, to_eye), hair_normal, eye_normal, worn, look.crowding);
     }
     let root_m = in.position_m - in.offset_m * (f32(in.layer) / f32(tile.layers - 1u));
     for (var i = 0u; i < view.light_count; i++) {

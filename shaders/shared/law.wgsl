@@ -186,9 +186,10 @@ fn law_sky(which: u32, above: f32, eye_hair: f32, hair_normal: f32, eye_normal: 
 }
 
 // Optical depth that light and eye share, per hair area per volume and diameter, by the azimuth between them.
-fn hot_spot(cos_azimuth: f32) -> f32 {
+fn gaps(cos_azimuth: f32, light_normal: f32) -> f32 {
     let half_sine = sqrt(max(0.5 * (1.0 - cos_azimuth), 0.0));
-    return 1.0 / (0.18 + half_sine * (0.735 + half_sine * 20.7));
+    let both = 1.0 / (0.18 + half_sine * (0.735 + half_sine * 20.7));
+    return both + 1.1 / max(light_normal, 0.2) - 0.65;
 }
 
 // What is left of scattered light where more lies before the light than in any slab.
@@ -199,13 +200,15 @@ fn beyond(place: HairPlace) -> f32 {
 
 // Radiance towards the eye per irradiance of one light; `crowding` is hair area per volume times diameter.
 fn lit(which: u32, angles: Angles, place: HairPlace, worn: Worn, crowding: f32) -> vec3<f32> {
-    let shared_depth = min(crowding * hot_spot(angles.cos_azimuth), place.depth);
+    let shared_depth = min(crowding * gaps(angles.cos_azimuth, place.light_normal), place.depth);
     let arriving = cos_of(angles.sin_in) * exp(shared_depth - place.depth);
     let multiple = of_colour(law_light(which, place, angles), worn.logit, BRIGHTEST) * beyond(place);
     return fibre_scatter(which, angles, worn.absorption) * arriving + multiple;
 }
 
 // Radiance towards the eye per radiance of a sky that is everywhere the same.
-fn lit_by_sky(which: u32, above: f32, eye_hair: f32, hair_normal: f32, eye_normal: f32, worn: Worn) -> vec3<f32> {
-    return of_colour(law_sky(which, above, eye_hair, hair_normal, eye_normal), worn.logit, 0.0);
+fn lit_by_sky(which: u32, above: f32, eye_hair: f32, hair_normal: f32, eye_normal: f32, worn: Worn, crowding: f32) -> vec3<f32> {
+    let lost = 1.0 / (1.0 + exp(worn.logit));
+    let gap_depth = min(crowding * 2.4, above) * lost * lost;
+    return of_colour(law_sky(which, above, eye_hair, hair_normal, eye_normal), worn.logit, 0.0) * exp(gap_depth);
 }

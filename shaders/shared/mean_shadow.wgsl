@@ -7,7 +7,7 @@
 
 // Height of the tallest hair where the length field is 1, m; 0 where none grows.
 fn tips_m() -> f32 {
-    return max(scene.guard_kind.top_m, scene.undercoat_kind.top_m);
+    return max(scene.guard_top_m, scene.undercoat_top_m);
 }
 
 // Parts of a depth: undercoat, guard hair, and hair of other limbs.

@@ -5,18 +5,6 @@
 #import furrier::prism::Prism
 #import furrier::light::Light
 
-// One kind of hair as a layer over flat skin.
-struct Kind {
-    // Projected hair area per skin area and height, 1/m, where the density field is 1; 0 where there is no such hair.
-    area_per_m: f32,
-    // Mean height where the length field is 1, m.
-    height_m: f32,
-    // Standard deviation of height over its mean.
-    variation: f32,
-    // Height of the tallest where the length field is 1, m.
-    top_m: f32,
-}
-
 struct Scene {
     triangle_count: u32,
     layers: u32,
@@ -54,8 +42,10 @@ struct Scene {
 
     undercoat_ramp: array<vec4<f32>, 3>,
     guard_ramp: array<vec4<f32>, 3>,
-    guard_kind: Kind,
-    undercoat_kind: Kind,
+    // Heights of the tallest hair where the length field is 1, m; of both kinds in the table of hair area above.
+    guard_top_m: f32,
+    undercoat_top_m: f32,
+    above_top_m: f32,
 
     tip_transparency: f32,
     tip_exponent: f32,
@@ -113,7 +103,8 @@ struct Strand {
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var<storage, read> triangles: array<Triangle>;
 @group(0) @binding(2) var<storage, read> vertices: array<Vertex>;
-// Share of hairs that reach a height; hair area above it, of both kinds; what shared/mean_shadow.wgsl reads.
+// By heights of the undercoat's shell: share of hairs that reach it; hair area above it, of both kinds; where between stored levels
+// of shadow it lies. By heights of above_top_m: hair area above. Then what shared/mean_shadow.wgsl reads.
 @group(0) @binding(3) var<storage, read> tables: array<f32>;
 // The first is the key.
 @group(0) @binding(4) var<storage, read> lights: array<Light>;

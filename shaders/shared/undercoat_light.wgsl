@@ -60,7 +60,7 @@ fn undercoat_light(taken: Step, origin_m: vec3<f32>, direction: vec3<f32>) -> Ap
     var radiance = vec3(0.0);
     if any(scene.ambient != vec3(0.0)) {
         let eye_hair = clamp(dot(taken.hair, to_eye), -1.0, 1.0);
-        radiance = scene.ambient * lit_by_sky(1u, above, eye_hair, hair_normal, eye_normal, worn);
+        radiance = scene.ambient * lit_by_sky(1u, above, eye_hair, hair_normal, eye_normal, worn, scene.undercoat_crowding);
     }
     for (var i = 0u; i < scene.undercoat_light_count; i++) {
         let light = light_at(lights[i], middle_m);

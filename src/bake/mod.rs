@@ -31,7 +31,7 @@ use crate::fur::patch::{Parameterisation, parameterise};
 use crate::math::Vec3;
 use crate::metrics::timing;
 use crate::preset::Preset;
-use crate::volume::scene::{HairScattering, Layer};
+use crate::volume::scene::{HairScattering, crowding};
 use skin::{Groomed, Role};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -272,7 +272,7 @@ fn recipe(preset: &Preset, fibres: [&Fibre; 2]) -> Result<TileRecipe> {
         lean_deg: preset.groom.lean_deg,
         looks: Some(TileLooks {
             of: [scattering.guard.packed(), scattering.undercoat.packed()],
-            crowding: fibres.map(|fibre| Layer::new(fibre, 1.0, 1.0).crowding),
+            crowding: fibres.map(crowding),
             undercoat_share: Vec::new(),
         }),
     })

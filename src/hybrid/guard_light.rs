@@ -5,13 +5,12 @@ use crate::data::strands::Strands;
 use crate::hybrid::prepared::Prepared;
 use crate::math::Vec3;
 use crate::math::lanes::{self, F32s, Isa, MOST, Row, Vec3Row, Vec3s};
-use crate::math::table::Table;
 use crate::shade::Angles;
 use crate::shade::law::Place;
 use crate::volume::march::content::Content;
 use crate::volume::march::shadows::Shadows;
 use crate::volume::mean::MeanShadow;
-use crate::volume::scene::{Layer, ramps, slant_depths, terminators};
+use crate::volume::scene::{self, ramps, slant_depths, terminators};
 use crate::volume::shell::lattice::Lattices;
 use rayon::prelude::*;
 
@@ -23,10 +22,6 @@ pub struct GuardShader<'a> {
     eye_m: Vec3,
     /// Hair area per volume times diameter, where the fields are 1.
     crowding: f32,
-    /// Height at which no hair is left where the length field is 1, m.
-    top_m: f32,
-    /// Hair area above heights per skin area, by their share of `top_m`, where the fields are 1.
-    above: Table,
     /// Where strands are lit.
     sites: Vec<LitPoint>,
 }
@@ -78,10 +73,6 @@ impl<'a> GuardShader<'a> {
         eye_m: Vec3,
     ) -> Self {
         let scene = &prepared.scene;
-        let layer = |fibre| Layer::new(fibre, 1.0, 1.0);
-        let layers = [scene.guard.map(|(_, fibre)| layer(fibre)), scene.undercoat.map(layer)];
-        let top_m = layers.iter().flatten().map(|l| l.height_m + 5.0 * l.spread_m).fold(f32::MIN_POSITIVE, f32::max);
-        let above = Table::new(|x| layers.iter().flatten().map(|layer| layer.above(x * top_m)).sum());
         let last = (strands.points_per_strand - 1) as f32;
         let site = |i: usize| {
             let s = lit_point_s(i);
@@ -89,8 +80,8 @@ impl<'a> GuardShader<'a> {
             LitPoint { s, segment, along: s * last - segment as f32 }
         };
         let sites = (0..LIT_POINTS).map(site).collect();
-        let crowding = layers[0].map_or(0.0, |layer| layer.crowding);
-        Self { prepared, strands, shadows, eye_m, crowding, top_m, above, sites }
+        let crowding = scene.guard.map_or(0.0, |(_, fibre)| scene::crowding(fibre));
+        Self { prepared, strands, shadows, eye_m, crowding, sites }
     }
 
     /// Fills the stored shadow that strands beside open borders are lit by, prism by prism: strands of one prism, asking for it
@@ -123,10 +114,8 @@ impl<'a> GuardShader<'a> {
         let normal = mix3(&self.prepared.normals).normalize_or(Vec3::Y);
         let lean = mix3(&scene.fields.lean).normalize_or(normal);
         let (density, length) = (mix1(&scene.fields.density), mix1(&scene.fields.length));
-        let factor = density * length;
         // Height along the lean, so that a leaning coat's layers are as thick as its hairs are long.
         let rise = lean.dot(normal).max(0.05);
-        let share_of_top = 1.0 / (rise * self.top_m * length).max(f32::MIN_POSITIVE);
 
         let points = strands.points_of_m(strand);
         let last = points.len() - 1;
@@ -154,7 +143,7 @@ impl<'a> GuardShader<'a> {
                 to_eye: (Vec3s::splat(self.eye_m) - at_m).normalized_or(normal),
                 normal,
                 lean: Vec3s::splat(lean),
-                above: self.above.at_lanes(height_m * share_of_top) * factor,
+                above: self.prepared.above.at_lanes(height_m * (1.0 / rise), density, length),
                 key_depth: column.depths(height_m),
                 crowding: self.crowding * density,
             };
@@ -205,7 +194,7 @@ impl<'a> GuardShader<'a> {
         if lighting.ambient != Vec3::ZERO {
             let angles = Angles::of_lanes(site.hair, site.normal, site.to_eye);
             let place = Place::new(angles, normals[1], site.above, site.above, [normals[0], normals[1], normals[1]]);
-            let [x, y, z] = hair.sky(&place, &worn);
+            let [x, y, z] = hair.sky(&place, &worn, crowding);
             sum = sum + Vec3s::new(x, y, z).times(Vec3s::splat(lighting.ambient));
         }
         sum

@@ -8,7 +8,7 @@ use crate::stage::projection::Projection;
 use crate::volume::march::content::Content;
 use crate::volume::march::volume::{Volume, splits};
 use crate::volume::mean::MeanShadow;
-use crate::volume::scene::{Lighting, Scene};
+use crate::volume::scene::{Above, Lighting, Scene};
 use std::time::Instant;
 
 /// Skin, hair and lights made ready to be drawn through any camera. Densities and shadows are filled where the first picture needs
@@ -22,6 +22,8 @@ pub struct Prepared<'a> {
     pub settings: Settings,
     /// The skin's smooth normals.
     pub normals: Vec<Vec3>,
+    /// Hair area above heights.
+    pub above: Above,
     /// What fills the shell; none where no undercoat grows.
     pub content: Option<Content<'a>>,
     /// The key light's shadow in the mean; none where nothing grows.
@@ -36,6 +38,7 @@ pub struct Prepared<'a> {
 /// Names a scattering parameter out of range.
 pub fn prepare<'a>(scene: &Scene<'a>, lighting: &'a Lighting, settings: &Settings) -> Result<Prepared<'a>> {
     let start = Instant::now();
+    let above = Above::new([scene.guard.map(|(_, fibre)| fibre), scene.undercoat]);
     let normals = scene.skin.smooth_normals();
     let (content, mean) = rayon::join(
         || Content::new(scene, &normals, settings.resolution),
@@ -43,7 +46,7 @@ pub fn prepare<'a>(scene: &Scene<'a>, lighting: &'a Lighting, settings: &Setting
     );
     let mut steps = Steps::default();
     steps.add_since("shell", start, content.as_ref().map_or(0, |content| content.shell.bytes()));
-    Ok(Prepared { scene: *scene, lighting, settings: *settings, normals, content, mean, steps })
+    Ok(Prepared { scene: *scene, lighting, settings: *settings, normals, above, content, mean, steps })
 }
 
 impl Prepared<'_> {

@@ -7,7 +7,7 @@ use crate::math::Vec3;
 use crate::math::fast::exp_negative;
 use crate::stage::projection::Projection;
 use crate::volume::bins::TILE;
-use crate::volume::scene::{Layer, sky_depth, slant_depth, terminator};
+use crate::volume::scene::{sky_depth, slant_depth, terminator};
 use std::f32::consts::FRAC_1_PI;
 
 /// No triangle.
@@ -72,10 +72,8 @@ pub fn shade(prepared: &Prepared<'_>, t: u32, barycentric: Vec3, direction: Vec3
     let lean = mix3(&scene.fields.lean).normalize_or(normal);
     let albedo = mix3(&scene.fields.tint) * scene.skin_factor;
     let (density, length) = (mix1(&scene.fields.density), mix1(&scene.fields.length));
-    let kinds = [scene.guard.map(|(_, fibre)| fibre), scene.undercoat];
     // The back of the skin is bare.
-    let above: f32 =
-        if back { 0.0 } else { kinds.iter().flatten().map(|f| Layer::new(f, density, length).above(0.0)).sum() };
+    let above = if back { 0.0 } else { prepared.above.at(0.0, density, length) };
     let mut radiance = lighting.ambient * albedo * exp_negative(-sky_depth(above));
     let at_m = mix3(&scene.skin.positions_m);
     for (i, light) in lighting.all().map(|light| light.at(at_m)).enumerate() {

@@ -7,7 +7,7 @@ use crate::shade::law::light::WornColour;
 use crate::shade::law::{Place, Scattering};
 use crate::volume::march::MarchSteps;
 use crate::volume::march::content::Content;
-use crate::volume::scene::{Layer, Lighting, Scene, ramps, slant_depths, terminators};
+use crate::volume::scene::{self, Lighting, Scene, ramps, slant_depths, terminators};
 use crate::volume::shell::prisms::Prisms;
 
 /// Shades undercoat. Holds what does not change from step to step.
@@ -29,7 +29,7 @@ impl<'a> UndercoatShader<'a> {
             eye_m,
             hair: &scene.scattering.undercoat,
             ramp: scene.undercoat.map_or([Vec3::ONE; 3], |fibre| fibre.profile.ramp),
-            crowding: scene.undercoat.map_or(0.0, |fibre| Layer::new(fibre, 1.0, 1.0).crowding),
+            crowding: scene.undercoat.map_or(0.0, scene::crowding),
         }
     }
 
@@ -65,7 +65,7 @@ impl<'a> UndercoatShader<'a> {
         if self.lighting.ambient != Vec3::ZERO {
             let angles = Angles::of_lanes(steps.hair, normal, to_eye);
             let place = Place::new(angles, normals[1], above, above, [normals[0], normals[1], normals[1]]);
-            let [x, y, z] = self.hair.sky(&place, &site.worn);
+            let [x, y, z] = self.hair.sky(&place, &site.worn, crowding);
             radiance = radiance + Vec3s::new(x, y, z).times(Vec3s::splat(self.lighting.ambient));
         }
         (albedo, radiance)

@@ -13,7 +13,7 @@ use crate::math::{DVec3, Vec3};
 use crate::shade::Angles;
 use crate::shade::law::{Place, Scattering};
 use crate::volume::mean::BLOCKED;
-use crate::volume::scene::{Layer, Lighting, Scene, sky_depth, slant_depth, terminator};
+use crate::volume::scene::{self, Above, Lighting, Scene, sky_depth, slant_depth, terminator};
 use std::f64::consts::FRAC_1_PI;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -64,6 +64,7 @@ pub struct Shader<'a> {
     skin: &'a SkinBvh,
     /// Hair area per volume times diameter of guard hair and undercoat, where the fields are 1.
     crowding: [f32; 2],
+    above: Above,
     normals: &'a [Vec3],
 }
 
@@ -80,7 +81,8 @@ impl<'a> Shader<'a> {
             guard,
             shadows: std::iter::repeat_with(|| AtomicU32::new(f32::NAN.to_bits())).take(heights).collect(),
             crowding: [scene.guard.map(|(_, fibre)| fibre), scene.undercoat]
-                .map(|fibre| fibre.map_or(0.0, |fibre| Layer::new(fibre, 1.0, 1.0).crowding)),
+                .map(|fibre| fibre.map_or(0.0, scene::crowding)),
+            above: Above::new([scene.guard.map(|(_, fibre)| fibre), scene.undercoat]),
             normals,
         }
     }
@@ -159,7 +161,7 @@ impl<'a> Shader<'a> {
         let normals = [hair.dot(normal), to_eye.dot(normal)];
         let angles = Angles::of_dvectors(hair, normal, to_eye);
         let place = Place::new(angles, normals[1], above, above, [normals[0], normals[1], normals[1]]);
-        let mut sum = self.lighting.ambient.as_dvec3() * DVec3::from(look.sky(&place, &worn));
+        let mut sum = self.lighting.ambient.as_dvec3() * DVec3::from(look.sky(&place, &worn, site.crowding));
         let count = if fill { 1 + self.lighting.fill.len() } else { 1 };
         for (i, light) in self.lighting.all().take(count).enumerate() {
             let light = Arriving::new(light, site.at_m);
@@ -186,10 +188,8 @@ impl<'a> Shader<'a> {
     fn site(&self, point: &DShellPoint, at_m: DVec3, height_m: f64, lean: DVec3, key_depth: f64) -> Site {
         let fields = self.scene.fields;
         let (density, length) = (self.scalar(&fields.density, point) as f32, self.scalar(&fields.length, point) as f32);
-        let above = |fibre| Layer::new(fibre, density, length).above(height_m as f32);
-        let own = self.scene.undercoat.map_or(0.0, above);
-        let guard = self.scene.guard.map_or(0.0, |(_, fibre)| above(fibre));
-        Site { at_m, normal: self.normal(point), lean, above: own + guard, key_depth, crowding: 0.0 }
+        let above = self.above.at(height_m as f32, density, length);
+        Site { at_m, normal: self.normal(point), lean, above, key_depth, crowding: 0.0 }
     }
 
     /// Optical depth of hair between a point and the key light, up to the first skin.

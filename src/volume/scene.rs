@@ -5,9 +5,10 @@ use crate::data::light::{Directional, Light};
 use crate::data::mesh::Mesh;
 use crate::data::strands::Strands;
 use crate::error::Result;
-use crate::fur::groom::fibre::Fibre;
+use crate::fur::groom::fibre::{Fibre, LENGTH_SPREAD};
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, Vec3s};
+use crate::math::table::Table;
 use crate::shade::fibre::Fibres;
 use crate::shade::law::known::{self, Scattering};
 use crate::stage::light::Lit;
@@ -83,51 +84,92 @@ impl Lighting {
     }
 }
 
-/// One kind of hair as a layer over flat skin: what shadows without a volume are made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Layer {
-    /// Projected hair area per skin area and height, 1/m: density × mean diameter × length along the hair over height.
-    pub area_per_m: f32,
-    /// Mean height, m, along the lean.
-    pub height_m: f32,
-    /// Standard deviation of height, m.
-    pub spread_m: f32,
-    /// Hair area per volume times diameter: how much of a hair's light and shadow are its neighbours' own.
-    pub crowding: f32,
+/// Hair area above heights per skin area, of both kinds, as flat skin carries them: what is left of each hair above, as wide and
+/// as opaque as it is there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Above {
+    /// Height that no hair exceeds where the length field is 1, m along the lean.
+    pub top_m: f32,
+    table: Table,
 }
 
-impl Layer {
-    /// Of hair where the fields say `density` and `length`.
-    pub fn new(fibre: &Fibre, density: f32, length: f32) -> Self {
-        let longest = fibre.longest_m().max(f32::MIN_POSITIVE);
-        let rise = fibre.height_m() / longest;
-        let height_m = fibre.length_m * rise * length;
-        let mean_diameter_m = fibre.radius_m * (1.0 + fibre.profile.taper);
-        let area_per_m = fibre.density_per_m2 * density * mean_diameter_m / rise.max(1e-3);
+impl Above {
+    /// Of guard hair and undercoat.
+    pub fn new(kinds: [Option<&Fibre>; 2]) -> Self {
+        let top_m = kinds.iter().flatten().map(|fibre| fibre.height_m()).fold(f32::MIN_POSITIVE, f32::max);
+        let kinds: Vec<Kind> = kinds.into_iter().flatten().map(Kind::new).collect();
+        Self { top_m, table: Table::new(|share| kinds.iter().map(|kind| kind.above(share * top_m)).sum()) }
+    }
+
+    /// At heights from the skin to `top_m` in even steps, where the fields are 1.
+    pub fn values(&self) -> &[f32] {
+        self.table.values()
+    }
+
+    /// Above a height, m along the lean, where the fields say `density` and `length`.
+    pub fn at(&self, height_m: f32, density: f32, length: f32) -> f32 {
+        density * length * self.table.at(height_m / (self.top_m * length).max(f32::MIN_POSITIVE))
+    }
+
+    /// [`Self::at`] in lanes.
+    #[inline(always)]
+    pub fn at_lanes<I: Isa>(&self, height_m: F32s<I>, density: f32, length: f32) -> F32s<I> {
+        let share = height_m * (1.0 / (self.top_m * length).max(f32::MIN_POSITIVE));
+        self.table.at_lanes(share) * (density * length)
+    }
+}
+
+/// A kind of hair, as [`Above`] adds it up.
+struct Kind {
+    density_per_m2: f32,
+    length_m: f32,
+    /// Height over length along the hair.
+    rise: f32,
+    variation: f32,
+    /// ∫ of a hair's opaque width from s to the tip, m, for s in even steps.
+    left_m: [f32; STEPS + 1],
+}
+
+/// Steps along a hair, and over the lengths of hairs.
+const STEPS: usize = 64;
+
+impl Kind {
+    fn new(fibre: &Fibre) -> Self {
+        let width_m = |s: f32| 2.0 * fibre.radius_m * fibre.profile.radius_factor(s) * fibre.profile.opacity_at(s);
+        let mut left_m = [0.0; STEPS + 1];
+        for i in (0..STEPS).rev() {
+            left_m[i] = left_m[i + 1] + width_m((i as f32 + 0.5) / STEPS as f32) / STEPS as f32;
+        }
         Self {
-            area_per_m,
-            height_m,
-            spread_m: height_m * fibre.shape.length_variation,
-            crowding: area_per_m * mean_diameter_m,
+            density_per_m2: fibre.density_per_m2,
+            length_m: fibre.length_m,
+            rise: (fibre.height_m() / fibre.longest_m().max(f32::MIN_POSITIVE)).max(1e-3),
+            variation: fibre.shape.length_variation,
+            left_m,
         }
     }
 
-    /// Hair area above `height_m` per skin area: ∫ of the share of hairs that reach so far, times `area_per_m`.
-    ///
-    /// For heights of normal distribution this is σ φ(z) + (H − h) Φ(z), z = (H − h)/σ.
-    pub fn above(&self, height_m: f32) -> f32 {
-        let left = self.height_m - height_m;
-        if self.spread_m < 1e-9 {
-            return self.area_per_m * left.max(0.0);
+    /// Over lengths of normal distribution, cut where the longest and shortest hairs are.
+    fn above(&self, height_m: f32) -> f32 {
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for i in 0..STEPS {
+            let z = LENGTH_SPREAD * (2.0 * (i as f32 + 0.5) / STEPS as f32 - 1.0);
+            let (weight, length_m) = (libm::expf(-0.5 * z * z), self.length_m * (1.0 + z * self.variation));
+            let at = (height_m / (length_m * self.rise).max(f32::MIN_POSITIVE) * STEPS as f32).clamp(0.0, STEPS as f32);
+            let low = (at as usize).min(STEPS - 1);
+            let left_m = self.left_m[low] + (at - low as f32) * (self.left_m[low + 1] - self.left_m[low]);
+            sum += weight * length_m * left_m;
+            weights += weight;
         }
-        let z = left / self.spread_m;
-        if z > 5.0 {
-            return self.area_per_m * left;
-        }
-        let density = 0.398_942_3 * libm::expf(-0.5 * z * z);
-        let share = 0.5 * (1.0 + libm::erff(z * std::f32::consts::FRAC_1_SQRT_2));
-        self.area_per_m * (self.spread_m * density + left * share).max(0.0)
+        self.density_per_m2 * sum / weights
     }
+}
+
+/// Hair area per volume times diameter, on skin where the fields are 1: how much of a hair's light and shadow are its neighbours'.
+pub fn crowding(fibre: &Fibre) -> f32 {
+    let mean_diameter_m = fibre.radius_m * (1.0 + fibre.profile.taper);
+    let rise = (fibre.height_m() / fibre.longest_m().max(f32::MIN_POSITIVE)).max(1e-3);
+    fibre.density_per_m2 * mean_diameter_m * mean_diameter_m / rise
 }
 
 /// Optical depth from hair area `above` per skin area towards `to_light`, hair along `lean`: a flat layer crossed on a

@@ -32,7 +32,7 @@ pub const CONSTANTS: [Constant; 28] = [
     U32("STEPS", slot(offset_of!(Totals, steps))),
     U32("OVERFLOW", slot(offset_of!(Totals, overflow))),
     U32("TABLE_VALUES", Table::VALUES as u32),
-    U32("TABLES", TABLES as u32),
+    U32("TABLES", TABLES as u32 + 1),
     U32("MEAN_LAYERS", mean::LAYERS as u32),
     U32("LIT_POINTS", LIT_POINTS as u32),
     U32("MOST_STEPS", MOST_STEPS),

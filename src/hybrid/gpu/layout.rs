@@ -5,22 +5,8 @@ use crate::hybrid::Settings;
 use crate::hybrid::resolve::Blending;
 use crate::math::Vec3;
 use crate::stage::projection::Projection;
-use crate::volume::scene::{Layer, Lighting, Scene};
+use crate::volume::scene::{self, Above, Lighting, Scene};
 use bytemuck::{Pod, Zeroable};
-
-/// `Kind` of `shared/scene.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct KindUniform {
-    /// Projected hair area per skin area and height, 1/m.
-    pub area_per_m: f32,
-    /// Mean height, m.
-    pub height_m: f32,
-    /// Standard deviation of height over its mean.
-    pub variation: f32,
-    /// Height of the tallest where the length field is 1, m.
-    pub top_m: f32,
-}
 
 /// `Scene` of `shared/scene.wgsl`.
 #[repr(C)]
@@ -53,32 +39,23 @@ pub struct SceneUniform {
     pub taper: f32,
     pub undercoat_ramp: [[f32; 4]; 3],
     pub guard_ramp: [[f32; 4]; 3],
-    pub guard_kind: KindUniform,
-    pub undercoat_kind: KindUniform,
+    pub guard_top_m: f32,
+    pub undercoat_top_m: f32,
+    pub above_top_m: f32,
     pub tip_transparency: f32,
     pub tip_exponent: f32,
     pub opaque: f32,
     pub guard_crowding: f32,
     pub undercoat_crowding: f32,
-    pub padding: [f32; 3],
 }
 
 impl SceneUniform {
     /// Light and hair of a scene; counts, and what only undercoat has, are left to be filled in.
-    pub fn new(scene: &Scene<'_>, lighting: &Lighting, settings: &Settings) -> Self {
+    pub fn new(scene: &Scene<'_>, above: &Above, lighting: &Lighting, settings: &Settings) -> Self {
         let guard = scene.guard;
         let (groups, attenuation_per_m) = match settings.blending {
             Blending::Virtual { fragments } => (fragments.clamp(1, 64) as f32, 0.0),
             Blending::Simplified { attenuation_per_m } => (1.0, attenuation_per_m),
-        };
-        let kind = |fibre: &Fibre| {
-            let layer = Layer::new(fibre, 1.0, 1.0);
-            KindUniform {
-                area_per_m: layer.area_per_m,
-                height_m: layer.height_m,
-                variation: layer.spread_m / layer.height_m.max(f32::MIN_POSITIVE),
-                top_m: fibre.height_m(),
-            }
         };
         let ramp = |ramp: [Vec3; 3]| ramp.map(|c| c.extend(0.0).to_array());
         let lights = 1 + lighting.fill.len() as u32;
@@ -99,13 +76,14 @@ impl SceneUniform {
             taper: profile.map_or(1.0, |p| p.taper),
             undercoat_ramp: ramp(scene.undercoat.map_or([Vec3::ONE; 3], |fibre| fibre.profile.ramp)),
             guard_ramp: ramp(profile.map_or([Vec3::ONE; 3], |p| p.ramp)),
-            guard_kind: guard.map_or(KindUniform::default(), |(_, fibre)| kind(fibre)),
-            undercoat_kind: scene.undercoat.map_or(KindUniform::default(), kind),
+            guard_top_m: guard.map_or(0.0, |(_, fibre)| fibre.height_m()),
+            undercoat_top_m: scene.undercoat.map_or(0.0, Fibre::height_m),
+            above_top_m: above.top_m,
             tip_transparency: profile.map_or(0.0, |p| p.tip_transparency),
             tip_exponent: profile.map_or(1.0, |p| p.tip_exponent),
             opaque: settings.opaque,
-            guard_crowding: guard.map_or(0.0, |(_, fibre)| Layer::new(fibre, 1.0, 1.0).crowding),
-            undercoat_crowding: scene.undercoat.map_or(0.0, |fibre| Layer::new(fibre, 1.0, 1.0).crowding),
+            guard_crowding: guard.map_or(0.0, |(_, fibre)| scene::crowding(fibre)),
+            undercoat_crowding: scene.undercoat.map_or(0.0, scene::crowding),
             ..Self::default()
         }
     }

@@ -75,10 +75,10 @@ impl Resident {
     /// # Errors
     /// [`crate::error::Kind::Device`] where something does not fit the adapter.
     pub(super) fn new(gpu: &Gpu, prepared: &Prepared<'_>) -> Result<Self> {
-        let Prepared { scene, lighting, settings, normals, content, mean, .. } = prepared;
+        let Prepared { scene, lighting, settings, normals, above, content, mean, .. } = prepared;
         let shell = content.as_ref().map(|content| &content.shell);
         let faces = shell.map_or(Vec::new(), faces);
-        let mut uniform = SceneUniform::new(scene, lighting, settings);
+        let mut uniform = SceneUniform::new(scene, above, lighting, settings);
         uniform.face_count = faces.len() as u32;
         if let Some(Shell { undercoat, .. }) = shell {
             uniform.density_per_square_m = undercoat.density_per_m2;
@@ -95,6 +95,7 @@ impl Resident {
             (0..scene.skin.triangles.len() as u32).map(|t| triangle(scene, shell, mean.as_ref(), t)).collect();
         let mut tables =
             content.as_ref().map_or(vec![0.0; TABLES * Table::VALUES], |content| content.tables().concat());
+        tables.extend(above.values());
         tables.extend(mean.iter().flat_map(MeanShadow::of_columns));
         let vertices = VertexItem::of(scene, normals, shell.map_or(&[], |shell| &shell.offsets_m));
         Ok(Self {

@@ -7,14 +7,19 @@ use crate::shade::{Angles, Real};
 /// A colour per channel, as a fibre wears it.
 pub type WornColour<R> = [Worn<R>; 3];
 
-/// How much better light finds its way out along the way it came, by the azimuth φ between light and eye around the hair: light
-/// and eye share the gaps between hairs that have a width. Times hair area per volume and diameter it is the optical depth that
-/// is taken away (found by tracing explicit hair; `docs/steps/light.md`).
+/// How much better light finds its way to a hair that is seen: what the eye sees lies in gaps, which light uses too, the more the
+/// nearer it comes to the eye's way (φ, the azimuth between them around the hair) and the more hair it has to pass. Times hair
+/// area per volume and diameter it is the optical depth that is taken away. Found with walks through explicit hair
+/// (`docs/steps/light.md`).
 #[inline(always)]
-fn hot_spot<R: Real>(cos_azimuth: R) -> R {
+fn gaps<R: Real>(cos_azimuth: R, light_normal: R) -> R {
     let half_sine = (R::of(0.5) * (R::of(1.0) - cos_azimuth)).max(R::of(0.0)).sqrt();
-    R::of(1.0) / (R::of(0.18) + half_sine * (R::of(0.735) + half_sine * R::of(20.7)))
+    let shared = R::of(1.0) / (R::of(0.18) + half_sine * (R::of(0.735) + half_sine * R::of(20.7)));
+    shared + R::of(1.1) / light_normal.max(R::of(0.2)) - R::of(0.65)
 }
+
+/// The same for light of the whole sky on black hair.
+const SKY_GAPS: f64 = 2.4;
 
 impl Scattering {
     /// The nearest that the hair comes to a colour.
@@ -28,7 +33,7 @@ impl Scattering {
     #[inline(always)]
     pub fn light<R: Real>(&self, angles: Angles<R>, place: &Place<R>, worn: &WornColour<R>, crowding: R) -> [R; 3] {
         let lit = self.fibre.lit(angles);
-        let shared = (crowding * hot_spot(angles.cos_azimuth)).min(place.depth);
+        let shared = (crowding * gaps(angles.cos_azimuth, place.light_normal)).min(place.depth);
         let arriving = angles.cos_in() * (shared - place.depth).exp();
         let (multiple, beyond) = (self.law.multiple(place), place.beyond());
         let mut sum = [arriving; 3];
@@ -41,8 +46,16 @@ impl Scattering {
 
     /// Radiance towards the eye per radiance of a sky that is everywhere the same.
     #[inline(always)]
-    pub fn sky<R: Real>(&self, place: &Place<R>, worn: &WornColour<R>) -> [R; 3] {
+    pub fn sky<R: Real>(&self, place: &Place<R>, worn: &WornColour<R>, crowding: R) -> [R; 3] {
         let sky = self.law.sky(place);
-        [of_colour(sky, worn[0].logit, 0.0), of_colour(sky, worn[1].logit, 0.0), of_colour(sky, worn[2].logit, 0.0)]
+        let shared = (crowding * R::of(SKY_GAPS)).min(place.above);
+        let mut sum = [shared; 3];
+        for channel in 0..3 {
+            // What is scattered again and again finds its way anyhow.
+            let logit = worn[channel].logit;
+            let lost = R::of(1.0) / (R::of(1.0) + logit.exp_any());
+            sum[channel] = of_colour(sky, logit, 0.0) * (shared * lost * lost).exp_any();
+        }
+        sum
     }
 }

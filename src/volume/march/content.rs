@@ -5,7 +5,7 @@ use crate::fur::undercoat::{Pattern, Undercoat};
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa};
 use crate::math::table::Table;
-use crate::volume::scene::{Layer, Scene};
+use crate::volume::scene::{Above, Scene};
 use crate::volume::shell::Shell;
 use crate::volume::shell::prisms::{Prisms, Vertex};
 
@@ -71,12 +71,8 @@ impl<'a> Content<'a> {
             return None;
         }
         let triangles = scene.skin.triangles.len();
-        let own = Layer::new(fibre, 1.0, 1.0);
-        let guard = scene.guard.map(|(_, fibre)| Layer::new(fibre, 1.0, 1.0));
-        let above = Table::new(|t| {
-            let height_m = t * undercoat.height_m;
-            own.above(height_m) + guard.map_or(0.0, |layer| layer.above(height_m))
-        });
+        let both = Above::new([scene.guard.map(|(_, fibre)| fibre), Some(fibre)]);
+        let above = Table::new(|t| both.at(t * undercoat.height_m, 1.0, 1.0));
         let last_level = resolution.layers.max(1) as f32;
         let level = Table::new(|t| {
             let low = (t * last_level).floor().min(last_level - 1.0);

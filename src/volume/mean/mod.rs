@@ -31,7 +31,7 @@ pub const LAYERS: usize = 24;
 const DARK: f32 = 15.0;
 
 /// Optical depth that skin before the light counts for.
-pub const BLOCKED: f32 = 8.0;
+pub const BLOCKED: f32 = 30.0;
 
 /// How far from its origin a ray may meet the first face, and how far apart the ends of hair are that count as one, in
 /// heights of the tips.
