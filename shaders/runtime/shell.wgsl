@@ -6,7 +6,7 @@
 #import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, worn_of}
 #import furrier::looks::layer_looks
 #import furrier::shadow_map::key_share
-#import furrier::constants::{DEEPEST_HAIR, INVISIBLE, LEAST_CLEAR, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
+#import furrier::constants::{INVISIBLE, LEAST_CLEAR, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
 #import furrier::coat::{CoatVertex, Paint, Root, root_of, Filled, filled_slab, Frame, Medium, Footprint, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
     lateral, shadow_slant, depth_of_opacity, presence, path_through_slab, footprint, fetch, run_through_slab, gain, medium_of, fin_share, closeness}
 
@@ -257,7 +257,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let hair_normal = dot(tangent, normal);
     let eye_normal = dot(to_eye, normal);
     // At 45° to upright hair depth is hair area above.
-    let above = min(-log(max(surface.a, LEAST_CLEAR)), DEEPEST_HAIR) * present;
+    let above = -log(max(surface.a, LEAST_CLEAR)) * present;
     var radiance = vec3(0.0);
     if any(view.ambient != vec3(0.0)) {
         radiance = view.ambient * lit_by_sky(look.look, above, dot(tangent, to_eye), hair_normal, eye_normal, worn, look.crowding);

@@ -63,7 +63,7 @@ pub const MOST_SLANT: f64 = 1.25;
 /// Hair area of which a hair always has so much around it.
 pub const LEAST_ABOVE: f64 = 0.1;
 /// Share of further depth that scattered light is dimmed by.
-pub const FADING: f64 = 0.5;
+pub const FADING: f64 = 1.0;
 /// ln of the most that a hair sends per irradiance of what was scattered before.
 pub const BRIGHTEST: f64 = -1.2;
 
