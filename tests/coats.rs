@@ -99,6 +99,7 @@ pub fn tile(hairs: &[Hair], edge_m: f32, layers: u32, size: u32, seed: u64) -> T
     Tile {
         preset: "made".into(),
         sampled: Sampled::Square,
+        looks: None,
         edge_m,
         height_m,
         shells: shells(voxels, size, layers, slab_m, texel_m),

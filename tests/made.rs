@@ -1,7 +1,9 @@
 //! Coats made up for tests of files: every field has its own numbers, so that a mix-up shows.
 
 use furrier::asset::Asset;
-use furrier::data::coat::{Blend, Coat, CoatPrimitive, FinEdge, FinTexture, Sampled, ShellStack, Tile};
+use furrier::data::coat::{
+    Blend, Coat, CoatPrimitive, FinEdge, FinTexture, LOOK, Sampled, ShellStack, Tile, TileLooks,
+};
 use furrier::data::image::Image8;
 use furrier::math::hash::Stream;
 use furrier::math::{Vec2, Vec4};
@@ -10,6 +12,16 @@ fn noise(stream: &mut Stream, size: [u32; 2], channels: u32, top: u64) -> Image8
     let mut image = Image8::new(size[0], size[1], channels);
     image.pixels.iter_mut().for_each(|p| *p = (stream.bits() % top) as u8);
     image
+}
+
+fn looks(seed: u64) -> TileLooks {
+    let mut stream = Stream::new(seed + 2);
+    let mut some = || 2.0 * stream.unit() - 1.0;
+    TileLooks {
+        of: std::array::from_fn(|_| std::array::from_fn::<_, LOOK, _>(|_| std::array::from_fn(|_| some()))),
+        crowding: [some(), some()],
+        undercoat_share: (0..5).map(|_| some()).collect(),
+    }
 }
 
 /// A tile of noise: 5 layers, 8 texels, 4 mips.
@@ -35,6 +47,7 @@ pub fn tile(seed: u64) -> Tile {
     Tile {
         preset: format!("made {seed}"),
         sampled: if seed.is_multiple_of(2) { Sampled::Skin } else { Sampled::Square },
+        looks: (seed % 3 != 0).then(|| looks(seed)),
         edge_m: 0.008,
         height_m: 0.012,
         shells: ShellStack {

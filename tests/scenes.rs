@@ -9,8 +9,16 @@ use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::groom::{Colour, Guard, Length, Shape, Undercoat};
 use furrier::fur::grow::skin;
 use furrier::math::{DVec3, Vec3};
+use furrier::shade::fibre::Fibres;
 use furrier::stage::projection::Projection;
 use furrier::volume::scene::{HairScattering, Lighting, Scene};
+use std::sync::LazyLock;
+
+/// Both kinds of hair of the default fibre.
+pub fn scattering() -> &'static HairScattering {
+    static DEFAULT: LazyLock<HairScattering> = LazyLock::new(|| HairScattering::new(&Fibres::default()).unwrap());
+    &DEFAULT
+}
 
 /// Skin and hair that a [`Scene`] borrows.
 pub struct Grown {
@@ -54,7 +62,7 @@ impl Grown {
             skin_factor: Vec3::splat(0.5),
             guard: Some((&self.guard, &self.guard_fibre)),
             undercoat: Some(&self.undercoat_fibre),
-            scattering: HairScattering::default(),
+            scattering: scattering(),
         }
     }
 }

@@ -1,14 +1,16 @@
 //! Every shader parses and validates, and its structs lie in memory as Rust's do. Needs no adapter.
 
+use furrier::data::coat::LOOK;
 use furrier::gpu::light::LightItem;
 use furrier::gpu::{Source, compose};
 use furrier::hybrid::gpu::items::{InsideItem, StrandItem, TriangleItem, VertexItem, VirtualFragmentItem};
 use furrier::hybrid::gpu::kernels;
-use furrier::hybrid::gpu::layout::{
-    BlocksUniform, KindUniform, LobeUniform, SceneUniform, ViewUniform as CameraUniform,
+use furrier::hybrid::gpu::layout::{BlocksUniform, KindUniform, SceneUniform, ViewUniform as CameraUniform};
+use furrier::runtime::gpu::layout::{
+    CoatVertex, FinInstance, LayerLook, Mip, PaintUniform, SkinVertex, TileUniform, ViewUniform,
 };
-use furrier::runtime::gpu::layout::{CoatVertex, FinInstance, Mip, PaintUniform, SkinVertex, TileUniform, ViewUniform};
 use furrier::runtime::gpu::pipelines::{CASTER, FIN, RESOLVE, SHARED, SHELL, SKIN};
+use furrier::shade::fibre::FibreLobe;
 use naga::proc::Layouter;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, TypeInner};
@@ -109,6 +111,7 @@ fn structs_lie_as_in_rust() {
         ),
         (&shell, "Tile", in_rust!(TileUniform { edge_m, height_m, size, layers, mips, tinted, medium_unit_per_m })),
         (&shell, "Mip", in_rust!(Mip { gains })),
+        (&shell, "LayerLook", in_rust!(LayerLook { look, crowding })),
         (&shell, "CoatVertex", in_rust!(CoatVertex { position_m, u, offset_m, v, normal, longest, axis, tint, root })),
         (&shell, "Paint", in_rust!(PaintUniform { has_colour, has_painted })),
         (&fin, "FinEdge", in_rust!(FinInstance { ends, u, thickness, spacing_m })),
@@ -122,7 +125,6 @@ fn structs_of_kernels_lie_as_in_rust() {
     let (strands, march, density) = (kernel(kernels::STRANDS), kernel(kernels::MARCH), kernel(kernels::DENSITY));
     for (module, name, rust) in [
         (&strands, "Kind", in_rust!(KindUniform { area_per_m, height_m, variation, top_m })),
-        (&strands, "Lobe", in_rust!(LobeUniform { albedo, shift_rad, scale, unused })),
         (
             &strands,
             "Scene",
@@ -146,13 +148,9 @@ fn structs_of_kernels_lie_as_in_rust() {
                 clump_strength,
                 step_depth,
                 step_layers,
-                undercoat_albedo,
-                undercoat_diffuse,
-                undercoat_specular,
-                undercoat_exponent,
                 groups,
                 ambient,
-                guard_albedo,
+                attenuation_per_m,
                 skin_factor,
                 taper,
                 undercoat_ramp,
@@ -161,17 +159,9 @@ fn structs_of_kernels_lie_as_in_rust() {
                 undercoat_kind,
                 tip_transparency,
                 tip_exponent,
-                tt_azimuth_scale,
-                tt_norm,
-                glint,
-                glint_angle_rad,
-                glint_scale,
-                glint_norm,
-                surround_norm,
-                guard_diffuse,
-                attenuation_per_m,
                 opaque,
-                lobes
+                guard_crowding,
+                undercoat_crowding
             }),
         ),
         (
@@ -232,6 +222,16 @@ fn structs_of_kernels_lie_as_in_rust() {
         (&density, "Blocks", in_rust!(BlocksUniform { columns, count })),
     ] {
         assert_eq!(in_shader(module, name), Some(rust), "{name}");
+    }
+}
+
+/// What a look is packed from is compared number by number in `formulas/law.rs`; here it must have as many.
+#[test]
+fn a_look_has_as_many_numbers_as_in_rust() {
+    for module in [module(SHELL), kernel(kernels::STRANDS)] {
+        assert_eq!(in_shader(&module, "Look").map(|look| look.size), Some(16 * LOOK));
+        let lobe = in_shader(&module, "FibreLobe").map(|lobe| lobe.size);
+        assert_eq!(lobe, Some(size_of::<FibreLobe>()));
     }
 }
 

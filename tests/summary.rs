@@ -32,7 +32,15 @@ fn coat() -> Coat {
         fins: vec![FinEdge { ends: [0, 2], opposite: [1, 3], u: [0.0, 1.0], thickness: 1.0 }],
         ..CoatPrimitive::default()
     };
-    let tile = Tile { preset: "made".into(), sampled: Sampled::Square, edge_m: 0.01, height_m: 0.02, shells, fin };
+    let tile = Tile {
+        preset: "made".into(),
+        sampled: Sampled::Square,
+        looks: None,
+        edge_m: 0.01,
+        height_m: 0.02,
+        shells,
+        fin,
+    };
     Coat { metres_per_unit: 1.0, tiles: vec![tile], primitives: vec![worn] }
 }
 

@@ -133,7 +133,7 @@ pub fn on_level_skin<T>(hairs: &Cylinders, with: impl FnOnce(&Scene<'_>) -> T) -
         skin_factor: Vec3::ONE,
         guard: None,
         undercoat: Some(&fibre),
-        scattering: HairScattering::default(),
+        scattering: HairScattering::none(),
     })
 }
 

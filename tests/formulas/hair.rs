@@ -11,25 +11,20 @@ use furrier::hybrid::gpu::kernels::SHARED;
 use furrier::hybrid::gpu::layout::SceneUniform;
 use furrier::math::hash::{combine, unit_f32};
 use furrier::math::{Vec2, Vec3, Vec4};
-use furrier::shade::kajiya_kay::KajiyaKay;
-use furrier::shade::lobes::Lobes;
-use furrier::shade::{Angles, shadow_power};
 use furrier::volume::scene::{Layer, sky_depth, slant_depth, terminator};
 use furrier::volume::shell::block::{LARGEST, code};
 use furrier::volume::shell::subelement;
 
 /// Vectors per input.
-const OUTPUTS: usize = 14;
+const OUTPUTS: usize = 12;
 
 /// Evaluates everything at inputs of eight numbers in [0, 1).
 pub const MAIN: Source = Source {
     path: "formulas/hair.wgsl",
     text: Text::Wgsl(
         "
-#import furrier::constants::PI
 #import furrier::scene::{scene, Strand}
-#import furrier::fur_light::{angles_of, guard_lobes, kajiya_kay, above_height, above_both, slant_depth, sky_depth, terminator,
-    arc_cosine, cosine_of, shadow_power, cos_of}
+#import furrier::fur_light::{above_height, above_both, slant_depth, sky_depth, terminator}
 #import furrier::light::{Light, light_at}
 #import furrier::noise::simplex
 #import furrier::hash::{combine, unit, wide_of}
@@ -56,10 +51,8 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let hair = on_sphere(a.xy);
     let light = on_sphere(a.zw);
     let eye = on_sphere(b.xy);
-    let angles = angles_of(hair, light, eye);
-    let first = 14u * i;
-    outputs[first] = vec4(guard_lobes(angles), angles.sin_in);
-    outputs[first + 1u] = vec4(kajiya_kay(angles), terminator(light, eye), sky_depth(b.z));
+    let first = 12u * i;
+    outputs[first] = vec4(terminator(light, eye), sky_depth(b.z), along_hair(u32(100.0 * b.x), b.y), 0.0);
     outputs[first + 2u] = vec4(
         above_height(scene.guard_kind, a.x, 0.5 + a.y, 0.03 * a.z),
         above_height(scene.undercoat_kind, a.x, 0.5 + a.y, 0.03 * a.z),
@@ -67,7 +60,7 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
         opacity_at(b.w),
     );
     let p = 40.0 * (a.xyz - 0.5);
-    outputs[first + 3u] = vec4(simplex(p, 0u), simplex(p, 1u), arc_cosine(2.0 * b.x - 1.0), cosine_of(PI * (2.0 * b.y - 1.0)));
+    outputs[first + 3u] = vec4(simplex(p, 0u), simplex(p, 1u), 0.0, 0.0);
     let cell = vec3<i32>(floor(2000.0 * (b.xyz - 0.5)));
     let key = combine(combine(combine(vec2(0u), wide_of(cell.x)), wide_of(cell.y)), wide_of(cell.z));
     outputs[first + 4u] = vec4(unit(key), unit(combine(key, vec2(1u, 0u))), above_both(a.x, 0.5 + a.y, 0.03 * a.z), radius_factor(b.w));
@@ -76,19 +69,18 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let centre = subelement_centre(element, d);
     outputs[first + 5u] = vec4(centre, f32(subelement(centre, d)));
     outputs[first + 6u] = vec4(guard_ramp(b.w), mean_sine(b.x));
-    outputs[first + 7u] = vec4(shadow_power(a.xyz), along_hair(u32(100.0 * b.x), b.y));
     outputs[first + 8u] = vec4(undercoat_ramp(b.w), decode_value(u32(256.0 * b.x)));
     let packed = pack_faces(a.xyz, 2.0 * b.xyz - 1.0);
     outputs[first + 9u] = vec4(unpack_albedo(packed), f32(code_value(20.0 * b.x - 2.0)));
-    outputs[first + 10u] = vec4(unpack_tangent(packed), cos_of(2.0 * b.x - 1.0));
+    outputs[first + 10u] = vec4(unpack_tangent(packed), 0.0);
     let cone_scale = 1.0 / (0.05 + 0.2 * b.w);
     let lamp = Light(
         a.xyz - 0.5, a.w, vec3(1.0, 2.0, 3.0), select(1.0, 0.0, i % 8u == 0u), eye, cone_scale, 1.0 - cone_scale * b.z,
     );
     let arriving = light_at(lamp, 0.3 * vec3(b.z, b.w, -b.z));
     outputs[first + 11u] = vec4(root_of(Strand(vec3(0.0), 0u, 0.5 * a.xy, 0u, 0.0)), 0.0);
-    outputs[first + 12u] = vec4(arriving.to_light, 0.0);
-    outputs[first + 13u] = vec4(arriving.irradiance, 0.0);
+    outputs[first + 1u] = vec4(arriving.to_light, 0.0);
+    outputs[first + 7u] = vec4(arriving.irradiance, 0.0);
 }
 ",
     ),
@@ -105,8 +97,7 @@ pub fn formulas(shared: &[Source]) -> Vec<String> {
     let mesh = scenes::grid(2, 2, |u, v| Vec3::new(u, 0.0, -v) * 0.01);
     let grown = Grown::new(mesh, &guard, &undercoat, Vec3::X, 35.0, 3);
     let scene = grown.scene();
-    let lobes = Lobes::<f32>::new(&scene.scattering.guard).unwrap();
-    let mut uniform = SceneUniform::new(&scene, &lobes, &scenes::studio(), &Settings::default());
+    let mut uniform = SceneUniform::new(&scene, &scenes::studio(), &Settings::default());
     let volume = Undercoat::new(&grown.undercoat_fibre, Some(Pattern::default()));
     uniform.slope = volume.slope;
     let gpu = open();
@@ -114,8 +105,6 @@ pub fn formulas(shared: &[Source]) -> Vec<String> {
     let buffer = gpu.buffer("scene", &[uniform], wgpu::BufferUsages::UNIFORM);
     let outputs = on_device(&gpu, shared, MAIN, &[(&[Binding::Uniform], vec![buffer])], &inputs, OUTPUTS);
 
-    let hair = &scene.scattering;
-    let kajiya = KajiyaKay::<f32>::new(hair.undercoat_diffuse, hair.undercoat_specular, hair.undercoat_exponent);
     let layers = [&grown.guard_fibre, &grown.undercoat_fibre];
     let (guard, undercoat) = (grown.guard_fibre.profile, grown.undercoat_fibre.profile);
     let points = grown.guard.points_per_strand;
@@ -125,19 +114,8 @@ pub fn formulas(shared: &[Source]) -> Vec<String> {
         let mut close = |what: &str, got: f32, expected: f32| worst.note(i, what, got, expected);
         let (hair, light) = (on_sphere(Vec2::new(a.x, a.y)), on_sphere(Vec2::new(a.z, a.w)));
         let eye = on_sphere(Vec2::new(b.x, b.y));
-        let angles = Angles::new(hair.dot(light), hair.dot(eye), light.dot(eye));
-        let scattered = lobes.scatter(angles);
-        // Where hair, light and eye are nearly in line, the azimuth is a quotient of roundings.
-        if angles.sin_in.abs().max(angles.sin_out.abs()) < 0.999 {
-            close("R", out[0].x, scattered.plain);
-            close("TT", out[0].y, scattered.once);
-            close("TRT", out[0].z, scattered.twice);
-        }
-        let (tinted, plain) = kajiya.scatter(angles);
-        close("Kajiya-Kay's diffuse", out[1].x, tinted);
-        close("Kajiya-Kay's highlight", out[1].y, plain);
-        close("terminator", out[1].z, terminator(light, eye));
-        close("depth to the sky", out[1].w, sky_depth(b.z));
+        close("terminator", out[0].x, terminator(light, eye));
+        close("depth to the sky", out[0].y, sky_depth(b.z));
         let above = layers.map(|kind| Layer::new(kind, a.x, 0.5 + a.y).above(0.03 * a.z));
         close("guard hair above", out[2].x, above[0]);
         close("undercoat above", out[2].y, above[1]);
@@ -154,18 +132,15 @@ pub fn formulas(shared: &[Source]) -> Vec<String> {
         };
         let arriving = lamp.at(Vec3::new(b.z, b.w, -b.z) * 0.3);
         for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
-            close(&format!("direction to a light, {name}"), out[12].to_array()[k], arriving.to_light[k]);
-            close(&format!("irradiance, {name}"), out[13].to_array()[k], arriving.irradiance[k]);
+            close(&format!("direction to a light, {name}"), out[1].to_array()[k], arriving.to_light[k]);
+            close(&format!("irradiance, {name}"), out[7].to_array()[k], arriving.irradiance[k]);
         }
         let p = (a.truncate() - 0.5) * 40.0;
         close("noise", out[3].x, simplex(p, 0));
         close("noise", out[3].y, simplex(p, 1));
-        close("arc cosine", out[3].z, (2.0 * b.x - 1.0).acos());
-        close("cosine", out[3].w, (std::f32::consts::PI * (2.0 * b.y - 1.0)).cos());
-        close("cosine of a sine", out[10].w, (1.0 - (2.0 * b.x - 1.0).powi(2)).max(0.0).sqrt());
         close("radius", out[4].w, guard.radius_factor(b.w));
         close("mean sine", out[6].w, volume.mean_sine(b.x));
-        close("along the hair", out[7].w, (((100.0 * b.x) as usize % points) as f32 + b.y) / (points - 1) as f32);
+        close("along the hair", out[0].z, (((100.0 * b.x) as usize % points) as f32 + b.y) / (points - 1) as f32);
         let byte = (256.0 * b.x) as u32 as f32 / 255.0;
         close("stored value", out[8].w, byte * byte * LARGEST);
         // Rounded one way or the other.
@@ -180,7 +155,6 @@ pub fn formulas(shared: &[Source]) -> Vec<String> {
         assert!((out[5].truncate() - centre).abs().max_element() < 1e-6, "centre of {element} of {d}");
         assert_eq!(out[5].w, element as f32, "sub-element {element} of {d}");
         let colours = a.truncate();
-        worst.note_all(i, "power of shadows", out[7].truncate(), colours.map(shadow_power));
         worst.note_all(i, "guard hair's colour", out[6].truncate(), guard.ramp_at(b.w));
         worst.note_all(i, "undercoat's colour", out[8].truncate(), undercoat.ramp_at(b.w));
         worst.note_all(i, "root", out[11].truncate(), Vec3::new(0.5 * a.x, 0.5 * a.y, 1.0 - 0.5 * (a.x + a.y)));

@@ -1,6 +1,6 @@
 //! No function of a shader is left out: each is called by a kernel that compares it, or is named here with what holds it instead.
 
-use super::{coat, hair, look, place};
+use super::{coat, hair, law, look, place};
 use furrier::gpu::compose;
 use furrier::hybrid::gpu::kernels;
 use furrier::runtime::gpu::pipelines;
@@ -150,7 +150,7 @@ fn every_function_of_the_shaders_is_compared_or_held_elsewhere() {
     }
     files.sort();
     let mut compared = BTreeSet::new();
-    for main in [hair::MAIN, place::MAIN] {
+    for main in [hair::MAIN, law::MAIN, place::MAIN] {
         compared.extend(reached(&compose(main, &kernels::SHARED).unwrap()));
     }
     for main in [coat::MAIN, look::MAIN] {

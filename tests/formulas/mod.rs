@@ -2,6 +2,7 @@
 
 pub mod coat;
 pub mod hair;
+pub mod law;
 pub mod list;
 pub mod look;
 mod place;

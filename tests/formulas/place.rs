@@ -13,7 +13,6 @@ use furrier::hybrid::gpu::layout::{SceneUniform, ViewUniform};
 use furrier::math::hash::Stream;
 use furrier::math::table::Table;
 use furrier::math::{Vec2, Vec3};
-use furrier::shade::lobes::Lobes;
 use furrier::volume::march::content::TABLES;
 use furrier::volume::mean;
 use furrier::volume::shell::prism::{Prism, ShellPoint};
@@ -120,8 +119,7 @@ fn shaders_and_rust_agree_on_where_things_lie() {
     let mut volume = Undercoat::new(&grown.undercoat_fibre, Some(Pattern::default()));
     (volume.clump_spacing_m, volume.clump_strength) = (4e-3, 0.6);
     let offsets_m: Vec<Vec3> = (0..normals.len()).map(|v| fields.lean[v] * 0.012 * fields.length[v]).collect();
-    let lobes = Lobes::<f32>::new(&scene.scattering.guard).unwrap();
-    let mut uniform = SceneUniform::new(&scene, &lobes, &scenes::studio(), &Settings::default());
+    let mut uniform = SceneUniform::new(&scene, &scenes::studio(), &Settings::default());
     (uniform.pattern_amplitude, uniform.pattern_jitter) = (volume.pattern.amplitude, volume.pattern.jitter);
     uniform.pattern_wavelength_m = volume.wavelength_m();
     (uniform.clump_spacing_m, uniform.clump_strength) = (volume.clump_spacing_m, volume.clump_strength);

@@ -3,6 +3,9 @@
 use furrier::data::coat::GAIN_ANGLES_DEG;
 use furrier::data::shell::guards::{LEAST_COSINE, LEAST_EXTINCTION};
 use furrier::math::{DVec2, DVec3, Vec3};
+use furrier::shade::fibre::{Fibre, FibreLobe};
+use furrier::shade::law::polynomial::LOWEST_LIGHT;
+use furrier::shade::law::{FADING, LEAST_ABOVE, MOST_SLANT};
 use furrier::volume::mean;
 use furrier::volume::shell::lattice;
 use furrier::volume::shell::prism::ShellPoint;
@@ -128,40 +131,34 @@ pub fn smoothstep(from: f64, to: f64, x: f64) -> f64 {
 
 /// Share of a light that hair over skin at this cosine to it sees.
 pub fn above_horizon(cos_light: f64) -> f64 {
-    smoothstep(-0.25, 0.2, cos_light)
+    smoothstep(-0.35, 0.1, cos_light)
 }
 
-/// Per channel, what a transmittance becomes by scattering between hairs of this albedo.
-pub fn multiply_scattered(transmittance: f64, albedo: DVec3) -> DVec3 {
-    albedo.map(|a| transmittance.max(1e-6).powf((1.0 - a.min(0.99)).sqrt()))
+/// 1/cos θ_t by Snell's law, the cosine 0.1 at least.
+pub fn crossing(fibre: &Fibre, sine: f32) -> f32 {
+    let inside = f64::from(sine) * f64::from(fibre.inverse_index_squared).sqrt();
+    (1.0 / (1.0 - inside * inside).sqrt().max(0.1)) as f32
 }
 
-/// Radiance of hair towards `to_viewer` per irradiance from `to_light`: diffuse by Kajiya and Kay 1989, and the two lobes of
-/// Marschner et al. 2003 that a cylinder's surface and its far side send.
-pub fn scattered(
-    albedo: DVec3,
-    tangent: DVec3,
-    to_viewer: DVec3,
-    to_light: DVec3,
-    direct: f64,
-    diffuse: DVec3,
-) -> DVec3 {
-    let sin_light = (1.0 - tangent.dot(to_light).powi(2)).max(0.0).sqrt();
-    let agreement = tangent.length().clamp(1e-3, 1.0);
-    let t = tangent / agreement;
-    let theta = |to: DVec3| t.dot(to).clamp(-1.0, 1.0).asin();
-    let half = 0.5 * (theta(to_light) + theta(to_viewer));
-    let lobe = |tilt: f64, width: f64| {
-        let variance = width * width + 1.0 - agreement * agreement;
-        (-0.5 * (half - tilt).powi(2) / variance).exp() / (2.0 * PI * variance).sqrt()
-    };
-    let across = |to: DVec3| to - t * t.dot(to);
-    let (a, b) = (across(to_light), across(to_viewer));
-    let cos_phi = a.dot(b) / (a.length() * b.length()).max(1e-4);
-    let azimuth = 0.25 * (0.5 + 0.5 * cos_phi).max(0.0).sqrt();
-    let specular =
-        (DVec3::splat(0.05 * lobe(-0.12, 0.18)) + albedo * (0.08 * lobe(0.18, 0.30))) * (azimuth * sin_light);
-    albedo * diffuse * (0.87 * sin_light / PI) + specular * direct
+/// D of a lobe: its factors times 1, q, q², q³, c, s, sq, sq², sc, over c + w, with q = w/(c + w).
+pub fn scale(lobe: &FibreLobe, sine: f32) -> f32 {
+    let (s, w) = (f64::from(sine), f64::from(lobe.softness));
+    let c = (1.0 - s * s).max(0.0).sqrt();
+    let q = w / (c + w);
+    let terms = [1.0, q, q * q, q * q * q, c, s, s * q, s * q * q, s * c];
+    (terms.iter().zip(lobe.scale).map(|(term, factor)| term * f64::from(factor)).sum::<f64>() / (c + w)) as f32
+}
+
+/// Depth that light and eye share, over crowding: 1/(0.18 + 0.735 |sin φ/2| + 20.7 sin² φ/2).
+pub fn hot_spot(cos_azimuth: f32) -> f32 {
+    let half = (0.5 * f64::from(cos_azimuth.clamp(-1.0, 1.0)).acos()).sin();
+    (1.0 / (0.18 + 0.735 * half + 20.7 * half * half)) as f32
+}
+
+/// What is left of scattered light by half the depth that is more than 1.25 times the hair above, 0.1 at least, on the light's slant.
+pub fn beyond(above: f32, depth: f32, light_normal: f32) -> f32 {
+    let most = f64::from(above).max(LEAST_ABOVE) * MOST_SLANT / f64::from(light_normal).max(LOWEST_LIGHT);
+    (-FADING * (f64::from(depth) - most).max(0.0)).exp() as f32
 }
 
 /// Radiance of skin: Lambert, and a Blinn-Phong lobe of exponent 60 under Schlick's Fresnel term.

@@ -12,22 +12,25 @@ fn formulas_tell_a_thousandth_and_what_is_not_a_number() {
     assert_eq!((faults(0.5), faults(0.5005), faults(f32::NAN)), (0, 1, 1));
 }
 
-/// The shaders' constants, one of them a twentieth larger.
-fn drifted(shared: &[furrier::gpu::Source], name: &str) -> Vec<furrier::gpu::Source> {
+/// The shaders' modules, one constant of `module` a twentieth larger.
+fn drifted(shared: &[furrier::gpu::Source], module: &str, name: &str) -> Vec<furrier::gpu::Source> {
     use furrier::gpu::{Constant, Source, Text};
-    let Text::Constants(constants) = shared[0].text else { panic!("constants come first") };
     let mut found = false;
-    let drift = |constant: &Constant| match *constant {
+    let mut drift = |constant: &Constant| match *constant {
         Constant::F32(own, value) if own == name => {
             found = true;
             Constant::F32(own, 1.05 * value)
         }
         other => other,
     };
-    let constants: Vec<Constant> = constants.iter().map(drift).collect();
-    assert!(found, "no constant {name}");
-    let mut all = vec![Source::constants(constants.leak())];
-    all.extend_from_slice(&shared[1..]);
+    let of = |source: &Source| match source.text {
+        Text::Constants(constants) if source.path == module => {
+            Source::constants(source.path, constants.iter().map(&mut drift).collect::<Vec<_>>().leak())
+        }
+        _ => *source,
+    };
+    let all = shared.iter().map(of).collect();
+    assert!(found, "no constant {name} in {module}");
     all
 }
 
@@ -36,10 +39,21 @@ fn formulas_tell_a_constant_of_a_shader_that_drifts() {
     use crate::formulas::{coat, hair};
     use furrier::{hybrid::gpu::kernels, runtime::gpu::pipelines};
     for name in ["PI", "HORIZON", "DEEPEST_HAIR", "LARGEST"] {
-        assert!(!hair::formulas(&drifted(&kernels::SHARED, name)).is_empty(), "{name} may drift");
+        assert!(!hair::formulas(&drifted(&kernels::SHARED, "constants", name)).is_empty(), "{name} may drift");
     }
     for name in ["PI", "LEAST_VOLUME", "LEAST_BULK", "LEAST_COSINE", "LEAST_CLEAR", "FADE_BELOW"] {
-        assert!(!coat::law(&drifted(&pipelines::SHARED, name)).is_empty(), "{name} may drift");
+        assert!(!coat::law(&drifted(&pipelines::SHARED, "constants", name)).is_empty(), "{name} may drift");
+    }
+}
+
+#[test]
+fn formulas_tell_a_constant_of_the_law_that_drifts() {
+    use furrier::gpu::Constant;
+    use furrier::volume::lighting::LAW_CONSTANTS;
+    for constant in LAW_CONSTANTS {
+        let Constant::F32(name, _) = constant else { panic!("{constant:?} is not one number") };
+        let shared = drifted(&furrier::hybrid::gpu::kernels::SHARED, "law_constants", name);
+        assert!(!crate::formulas::law::formulas(&shared).is_empty(), "{name} may drift");
     }
 }
 

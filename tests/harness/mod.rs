@@ -8,14 +8,13 @@ use crate::architecture::{breaches, median_lines, too_long};
 use crate::circles::circles;
 use crate::docs::first_difference;
 use crate::hybrid_twins::share_alike;
-use crate::laws::shading::furnace;
+use crate::laws::fibre::{departure, sent};
 use crate::metrics::{changed, picture};
 use furrier::data::image::Image8;
 use furrier::data::light::Light;
 use furrier::data::ray::DepthRange;
 use furrier::math::Vec3;
 use furrier::metrics::compare::compare;
-use furrier::shade::kajiya_kay::KajiyaKay;
 
 fn breaches_of(path: &str, text: &str) -> Vec<String> {
     breaches(&[(path.to_owned(), text.to_owned())])
@@ -80,10 +79,19 @@ fn a_page_that_differs_by_a_letter_or_a_line_is_not_current() {
 }
 
 #[test]
-fn the_furnace_sees_a_highlight_without_its_normalisation() {
-    let hair = KajiyaKay::<f64>::new(0.0, 0.5, 20.0);
-    let sent = furnace(0.0, |angles| hair.scatter(angles).1 * 2.0 * std::f64::consts::PI);
-    assert!((sent - 0.5).abs() > 0.1, "{sent}");
+fn the_furnace_sees_a_lobe_that_is_a_fiftieth_too_strong() {
+    let mut fibre = crate::scenes::scattering().guard.fibre;
+    assert!(departure(&fibre, 1.0) < 5e-3);
+    fibre.lobes[3].scale.iter_mut().for_each(|x| *x *= 1.01);
+    assert!(departure(&fibre, 1.0) > 5e-3, "{}", sent(&fibre, 0.0));
+}
+
+#[test]
+fn double_precision_tells_a_hundredth_of_colour() {
+    let mut other = crate::scenes::scattering().guard;
+    assert!(crate::laws::fibre::off(&other, &other) < 5e-3);
+    other.colouring.factors[0] += 0.02;
+    assert!(crate::laws::fibre::off(&crate::scenes::scattering().guard, &other) > 5e-3);
 }
 
 #[test]

@@ -1,3 +1,5 @@
 //! Physical laws that hold whatever the numbers are.
 
+pub mod colour;
+pub mod fibre;
 pub mod shading;

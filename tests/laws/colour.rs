@@ -1,0 +1,117 @@
+//! Fur shows the colours it is asked for; what came with the program is what the program finds.
+
+use super::fibre::fibres;
+use furrier::math::hash::Stream;
+use furrier::preset::Preset;
+use furrier::shade::Angles;
+use furrier::shade::fibre::sample::Sampler;
+use furrier::shade::fibre::{Fibre, FibreModel, FibreParameters};
+use furrier::shade::law::known::{Known, known, scattering};
+use furrier::shade::law::slab::{Slab, Stand};
+use furrier::shade::law::{Place, Scattering, of_colour, solve};
+
+/// The fox's guard hair.
+fn fox() -> Scattering {
+    let fibres = Preset::load("fox").unwrap().fibre;
+    scattering(fibres.model, &fibres.guard).unwrap()
+}
+
+#[test]
+fn fur_shows_the_colour_that_it_wears() {
+    let fox = fox();
+    let sampler = Sampler::new(&fox.fibre);
+    // The lightest first.
+    let colours = [0.8, 0.7, 0.55, 0.35, 0.2, 0.1, 0.06, 0.03];
+    let absorptions = colours.map(|colour| fox.colouring.worn::<f64>(colour).absorption);
+    let shown = Slab::new(&fox.fibre, &sampler, absorptions).albedo(&Stand::new(37.0, 10.0), 80_000);
+    for (colour, shown) in colours.into_iter().zip(shown) {
+        println!("{colour}: shows {shown:.4}, {:+.1} %", 100.0 * (shown / colour - 1.0));
+    }
+    for (colour, shown) in colours.into_iter().zip(shown) {
+        assert!((shown / colour - 1.0).abs() < 0.05, "{colour} shows {shown}");
+    }
+}
+
+#[test]
+fn absorption_falls_from_colour_to_colour() {
+    for known in known().unwrap() {
+        let colouring = known.scattering.colouring;
+        let worn: Vec<_> = (0..=200).map(|i| colouring.worn(f64::from(i) / 200.0)).collect();
+        for two in worn.windows(2) {
+            let (a, b) = (two[0], two[1]);
+            assert!(a.absorption >= b.absorption && a.logit <= b.logit, "{a:?} and {b:?} of {:?}", known.parameters);
+        }
+    }
+}
+
+#[test]
+fn fibres_of_built_in_presets_are_known() {
+    let known = known().unwrap();
+    for (name, parameters) in fibres() {
+        assert!(known.iter().any(|known| known.is(FibreModel::Medulla, &parameters)), "{name} is not known");
+    }
+    for model in [FibreModel::Sadeghi, FibreModel::KajiyaKay] {
+        assert!(known.iter().any(|known| known.is(model, &FibreParameters::default())), "{model:?} is not known");
+    }
+    for (i, one) in known.iter().enumerate() {
+        assert!(known[..i].iter().all(|other| !other.is(one.model, &one.parameters)), "{one:?} is known twice");
+    }
+}
+
+/// The largest relative difference between numbers of two fibres, over the largest in each group of them.
+fn apart(a: &Fibre, b: &Fibre) -> f32 {
+    let numbers = |fibre: &Fibre| bytemuck::bytes_of(fibre).to_vec();
+    let (a, b): (Vec<f32>, Vec<f32>) =
+        (bytemuck::pod_collect_to_vec(&numbers(a)), bytemuck::pod_collect_to_vec(&numbers(b)));
+    let most = |values: &[f32]| values.iter().fold(1e-3_f32, |most, x| most.max(x.abs()));
+    a.chunks(12)
+        .zip(b.chunks(12))
+        .fold(0.0_f32, |worst, (a, b)| a.iter().zip(b).fold(worst, |worst, (x, y)| worst.max((x - y).abs() / most(a))))
+}
+
+#[test]
+fn known_fibres_are_what_their_parameters_say() {
+    for Known { model, parameters, scattering } in known().unwrap() {
+        let apart = apart(&scattering.fibre, &Fibre::new(model, &parameters));
+        assert!(apart < 1e-4, "{model:?} {parameters:?} is known as another fibre, {apart} apart");
+    }
+}
+
+#[test]
+fn the_default_fibre_is_solved_as_it_is_known() {
+    let known = scattering(FibreModel::Medulla, &FibreParameters::default()).unwrap();
+    let sampler = Sampler::new(&known.fibre);
+    let law = solve::law(&known.fibre, &sampler, &known.colouring, 60_000);
+    let mut stream = Stream::new(29);
+    let mut unit = || f64::from(stream.unit());
+    let colours = [0.05, 0.2, 0.5, 0.8];
+    let (mut light, mut sky) = ([[0.0; 2]; 4], [[0.0; 2]; 4]);
+    for _ in 0..4000 {
+        // Hair leans in x-z, light and eye over the horizon.
+        let lean = 1.2 * unit();
+        let hair = furrier::math::DVec3::new(libm::sin(lean), 0.0, libm::cos(lean));
+        let mut over = || {
+            let (z, turn) = (0.1 + 0.9 * unit(), std::f64::consts::TAU * unit());
+            let r = (1.0 - z * z).sqrt();
+            furrier::math::DVec3::new(r * libm::cos(turn), r * libm::sin(turn), z)
+        };
+        let (to_light, to_eye) = (over(), over());
+        let above = 4.0 * unit() * unit();
+        let angles = Angles::of_dvectors(hair, to_light, to_eye);
+        let depth = above * angles.cos_in() / to_light.z;
+        let place = Place::new(angles, to_light.dot(to_eye), above, depth, [hair.z, to_eye.z, to_light.z]);
+        for (i, &colour) in colours.iter().enumerate() {
+            let logit = known.colouring.worn::<f64>(colour).logit;
+            for (j, law) in [&known.law, &law].into_iter().enumerate() {
+                light[i][j] += of_colour(law.multiple(&place), logit, 0.0);
+                sky[i][j] += of_colour(law.sky(&place), logit, 0.0);
+            }
+        }
+    }
+    for (what, sums) in [("light", light), ("sky", sky)] {
+        for (colour, [known, found]) in colours.into_iter().zip(sums) {
+            println!("{what}, colour {colour}: {:+.2} %", 100.0 * (found / known - 1.0));
+            assert!((found / known - 1.0).abs() < 0.03, "{what}, colour {colour}: {found} of {known}");
+        }
+    }
+}
