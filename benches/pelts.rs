@@ -68,7 +68,11 @@ fn main() {
             }
         }
         let by = |a: [f64; 6], b: [f64; 6], less: f64| [0, 1, 2, 3, 4, 5].map(|i: usize| a[i] / b[i] - less);
-        println!("{pelt:?}: |error| {:.3}, by colour {:.3?}", off.iter().sum::<f64>() / all.iter().sum::<f64>(), by(off, all, 0.0));
+        println!(
+            "{pelt:?}: |error| {:.3}, by colour {:.3?}",
+            off.iter().sum::<f64>() / all.iter().sum::<f64>(),
+            by(off, all, 0.0)
+        );
         println!("{pelt:?}: bias {:.3?}; sky {sky_off:.3?}", by(sum, all, 1.0));
     }
 }

@@ -5,7 +5,7 @@ use furrier::gpu::light::LightItem;
 use furrier::gpu::{Source, compose};
 use furrier::hybrid::gpu::items::{InsideItem, StrandItem, TriangleItem, VertexItem, VirtualFragmentItem};
 use furrier::hybrid::gpu::kernels;
-use furrier::hybrid::gpu::layout::{BlocksUniform, KindUniform, SceneUniform, ViewUniform as CameraUniform};
+use furrier::hybrid::gpu::layout::{BlocksUniform, SceneUniform, ViewUniform as CameraUniform};
 use furrier::runtime::gpu::layout::{
     CoatVertex, FinInstance, LayerLook, Mip, PaintUniform, SkinVertex, TileUniform, ViewUniform,
 };
@@ -124,7 +124,6 @@ fn structs_lie_as_in_rust() {
 fn structs_of_kernels_lie_as_in_rust() {
     let (strands, march, density) = (kernel(kernels::STRANDS), kernel(kernels::MARCH), kernel(kernels::DENSITY));
     for (module, name, rust) in [
-        (&strands, "Kind", in_rust!(KindUniform { area_per_m, height_m, variation, top_m })),
         (
             &strands,
             "Scene",
@@ -155,8 +154,9 @@ fn structs_of_kernels_lie_as_in_rust() {
                 taper,
                 undercoat_ramp,
                 guard_ramp,
-                guard_kind,
-                undercoat_kind,
+                guard_top_m,
+                undercoat_top_m,
+                above_top_m,
                 tip_transparency,
                 tip_exponent,
                 opaque,

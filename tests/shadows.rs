@@ -13,7 +13,7 @@ use furrier::reference::medium::{Counted, DMedium};
 use furrier::reference::point::DShellPoint;
 use furrier::reference::skin::SkinBvh;
 use furrier::volume::mean::MeanShadow;
-use furrier::volume::scene::{Layer, Scene};
+use furrier::volume::scene::{Above, Scene};
 use furrier::volume::shell::block::code;
 use furrier::volume::shell::lattice::{self, Lattice, Lattices};
 
@@ -63,15 +63,13 @@ fn stored_shadows_are_linear_between_corners_and_levels() {
 fn mean_shadow_is_a_flat_layers_far_from_borders_and_nothing_on_one_towards_the_light() {
     let (mut guard, mut undercoat) = scenes::mink();
     (guard.density_per_cm2, undercoat.density_per_cm2) = (30.0, 900.0);
-    // The closed form knows neither taper nor transparent tips.
-    (guard.taper, guard.tip_transparency) = (1.0, 0.0);
     (guard.shape.jitter_deg, undercoat.shape.jitter_deg) = (0.0, 0.0);
     let mesh = scenes::grid(12, 12, |u, v| Vec3::new((u - 0.5) * 0.6, 0.0, (0.5 - v) * 0.6));
     let grown = Grown::new(mesh, &guard, &undercoat, Vec3::X, 0.0, 3);
     let scene = grown.scene();
     let to_light = Vec3::new(0.6, 0.8, 0.0);
     let shadow = MeanShadow::new(&scene, to_light, f32::INFINITY).unwrap();
-    let layers = [scene.guard.unwrap().1, scene.undercoat.unwrap()].map(|fibre| Layer::new(fibre, 1.0, 1.0));
+    let above = Above::new([Some(scene.guard.unwrap().1), scene.undercoat]);
     let middle = (0..scene.skin.triangles.len() as u32)
         .min_by(|&a, &b| {
             let far = |t: u32| scene.skin.corners_m(t as usize).iter().map(|p| p.length()).sum::<f32>();
@@ -80,7 +78,7 @@ fn mean_shadow_is_a_flat_layers_far_from_borders_and_nothing_on_one_towards_the_
         .unwrap();
     for share in [0.0, 0.25, 0.5] {
         let height_m = share / shadow.share(1.0, 1.0);
-        let expected = layers.iter().map(|layer| layer.above(height_m)).sum::<f32>() * 0.6 / 0.8;
+        let expected = above.at(height_m, 1.0, 1.0) * 0.6 / 0.8;
         let found = shadow.depth(middle, Vec3::splat(1.0 / 3.0), share);
         assert!((found / expected - 1.0).abs() < 0.02, "at {share}: {found}, flat {expected}");
     }
@@ -162,9 +160,8 @@ fn mean_shadow_is_the_references_where_a_crown_shades_its_brim() {
     assert!(strays < 0.015, "{strays}");
     // A flat layer's shadow knows of no crown.
     let flat = strays_on_a_hat(Vec3::X, f32::INFINITY, |mean, scene, _, share, cosine| {
-        let layers = [scene.guard.unwrap().1, scene.undercoat.unwrap()].map(|fibre| Layer::new(fibre, 1.0, 1.0));
-        let height_m = share / mean.share(1.0, 1.0);
-        layers.iter().map(|layer| layer.above(height_m)).sum::<f32>() / cosine
+        let above = Above::new([Some(scene.guard.unwrap().1), scene.undercoat]);
+        above.at(share / mean.share(1.0, 1.0), 1.0, 1.0) / cosine
     });
     assert!(flat > 0.05, "{flat}");
 }

@@ -11,7 +11,7 @@ use furrier::hybrid::gpu::kernels::SHARED;
 use furrier::hybrid::gpu::layout::SceneUniform;
 use furrier::math::hash::{combine, unit_f32};
 use furrier::math::{Vec2, Vec3, Vec4};
-use furrier::volume::scene::{Layer, sky_depth, slant_depth, terminator};
+use furrier::volume::scene::{Above, sky_depth, slant_depth, terminator};
 use furrier::volume::shell::block::{LARGEST, code};
 use furrier::volume::shell::subelement;
 
@@ -24,7 +24,7 @@ pub const MAIN: Source = Source {
     text: Text::Wgsl(
         "
 #import furrier::scene::{scene, Strand}
-#import furrier::fur_light::{above_height, above_both, slant_depth, sky_depth, terminator}
+#import furrier::fur_light::{slant_depth, sky_depth, terminator}
 #import furrier::light::{Light, light_at}
 #import furrier::noise::simplex
 #import furrier::hash::{combine, unit, wide_of}
@@ -54,8 +54,8 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let first = 12u * i;
     outputs[first] = vec4(terminator(light, eye), sky_depth(b.z), along_hair(u32(100.0 * b.x), b.y), 0.0);
     outputs[first + 2u] = vec4(
-        above_height(scene.guard_kind, a.x, 0.5 + a.y, 0.03 * a.z),
-        above_height(scene.undercoat_kind, a.x, 0.5 + a.y, 0.03 * a.z),
+        0.0,
+        0.0,
         slant_depth(b.z, light, eye, hair),
         opacity_at(b.w),
     );
@@ -63,7 +63,7 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     outputs[first + 3u] = vec4(simplex(p, 0u), simplex(p, 1u), 0.0, 0.0);
     let cell = vec3<i32>(floor(2000.0 * (b.xyz - 0.5)));
     let key = combine(combine(combine(vec2(0u), wide_of(cell.x)), wide_of(cell.y)), wide_of(cell.z));
-    outputs[first + 4u] = vec4(unit(key), unit(combine(key, vec2(1u, 0u))), above_both(a.x, 0.5 + a.y, 0.03 * a.z), radius_factor(b.w));
+    outputs[first + 4u] = vec4(unit(key), unit(combine(key, vec2(1u, 0u))), 0.0, radius_factor(b.w));
     let d = u32(b.w * 8.0);
     let element = min(u32(a.w * f32(1u << (2u * d))), (1u << (2u * d)) - 1u);
     let centre = subelement_centre(element, d);
@@ -97,7 +97,7 @@ pub fn formulas(shared: &[Source]) -> Vec<String> {
     let mesh = scenes::grid(2, 2, |u, v| Vec3::new(u, 0.0, -v) * 0.01);
     let grown = Grown::new(mesh, &guard, &undercoat, Vec3::X, 35.0, 3);
     let scene = grown.scene();
-    let mut uniform = SceneUniform::new(&scene, &scenes::studio(), &Settings::default());
+    let mut uniform = SceneUniform::new(&scene, &Above::new([None; 2]), &scenes::studio(), &Settings::default());
     let volume = Undercoat::new(&grown.undercoat_fibre, Some(Pattern::default()));
     uniform.slope = volume.slope;
     let gpu = open();
@@ -105,7 +105,6 @@ pub fn formulas(shared: &[Source]) -> Vec<String> {
     let buffer = gpu.buffer("scene", &[uniform], wgpu::BufferUsages::UNIFORM);
     let outputs = on_device(&gpu, shared, MAIN, &[(&[Binding::Uniform], vec![buffer])], &inputs, OUTPUTS);
 
-    let layers = [&grown.guard_fibre, &grown.undercoat_fibre];
     let (guard, undercoat) = (grown.guard_fibre.profile, grown.undercoat_fibre.profile);
     let points = grown.guard.points_per_strand;
     let mut worst = Worst::default();
@@ -116,10 +115,6 @@ pub fn formulas(shared: &[Source]) -> Vec<String> {
         let eye = on_sphere(Vec2::new(b.x, b.y));
         close("terminator", out[0].x, terminator(light, eye));
         close("depth to the sky", out[0].y, sky_depth(b.z));
-        let above = layers.map(|kind| Layer::new(kind, a.x, 0.5 + a.y).above(0.03 * a.z));
-        close("guard hair above", out[2].x, above[0]);
-        close("undercoat above", out[2].y, above[1]);
-        close("hair above", out[4].z, above[0] + above[1]);
         close("slanted depth", out[2].z, slant_depth(b.z, light, eye, hair));
         close("opacity", out[2].w, guard.opacity_at(b.w));
         let (at, strength) = (a.truncate() - 0.5, Vec3::new(1.0, 2.0, 3.0));

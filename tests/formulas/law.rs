@@ -18,7 +18,7 @@ pub const MAIN: Source = Source {
     text: Text::Wgsl(
         "
 #import furrier::law::{HairPlace, angles_of, cos_of, worn_of, around_hair, lobe_scale, crossing, fibre_scatter, of_colour, law_light,
-    law_sky, hot_spot, beyond, lit, lit_by_sky}
+    law_sky, gaps, beyond, lit, lit_by_sky}
 #import furrier::looks::looks
 
 @group(1) @binding(0) var<storage, read> inputs: array<vec4<f32>>;
@@ -43,12 +43,12 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     outputs[first + 1u] = vec4(log(worn.absorption), crossing(which, angles.sin_in));
     outputs[first + 2u] = vec4(worn.logit, lobe_scale(lobe.even, lobe.odd, lobe.last, angles.sin_in, cos_of(angles.sin_in)));
     outputs[first + 3u] = around_hair(which, angles.cos_azimuth);
-    outputs[first + 4u] = vec4(fibre_scatter(which, angles, worn.absorption), hot_spot(angles.cos_azimuth));
+    outputs[first + 4u] = vec4(fibre_scatter(which, angles, worn.absorption), gaps(angles.cos_azimuth, place.light_normal));
     outputs[first + 5u] = law_light(which, place, angles);
     outputs[first + 6u] = law_sky(which, place.above, angles.sin_out, place.hair_normal, place.eye_normal);
     outputs[first + 7u] = vec4(of_colour(inputs[i + 3u] - vec4(3.0, 0.0, 0.0, 0.0), worn.logit, -1.0), beyond(place));
     outputs[first + 8u] = vec4(lit(which, angles, place, worn, crowding), 0.0);
-    outputs[first + 9u] = vec4(lit_by_sky(which, place.above, angles.sin_out, place.hair_normal, place.eye_normal, worn), 0.0);
+    outputs[first + 9u] = vec4(lit_by_sky(which, place.above, angles.sin_out, place.hair_normal, place.eye_normal, worn, 0.3), 0.0);
     outputs[first + 10u] = vec4(looks[which].lobes[3].last.xyz, looks[which].rest.x);
     outputs[first + 11u] = looks[which].paths;
 }
@@ -140,13 +140,13 @@ pub fn formulas(shared: &[Source]) -> Vec<String> {
             rough.note(i, "ln of what was scattered before", out[5][k], multiple[k]);
             rough.note(i, "ln of light of the sky", out[6][k], sky[k]);
         }
-        rough.note_all(i, "lit by the sky", out[9].truncate(), look.sky(&place, &worn).into());
+        rough.note_all(i, "lit by the sky", out[9].truncate(), look.sky(&place, &worn, 0.3).into());
         // Where hair, light and eye are nearly in line, the azimuth is a quotient of roundings.
         if angles.sin_in.abs().max(angles.sin_out.abs()) < 0.999 {
             worst.note(i, "azimuth", out[0].z, angles.cos_azimuth);
             let around = look.fibre.azimuth.at(angles.cos_azimuth);
             (0..4).for_each(|k| worst.note(i, "around the hair", out[3][k], around[k]));
-            rough.note(i, "shared depth", out[4].w, reference::hot_spot(angles.cos_azimuth));
+            rough.note(i, "shared depth", out[4].w, reference::gaps(angles.cos_azimuth, normals[2]));
             let through = worn.map(|worn| lit.through(worn.absorption));
             rough.note_all(i, "scattered", out[4].truncate(), through.into());
             let sent = look.light(angles, &place, &worn, crowding);

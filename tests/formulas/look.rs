@@ -201,7 +201,8 @@ fn fins_are_as_opaque_and_as_bright_as_their_formulas_say() {
             let angles = Angles::of_dvectors(tangent, to_light, to_eye);
             let normals = [tangent.dot(normal), to_eye.dot(normal), to_light.dot(normal)];
             let place = Place::new(angles, to_light.dot(to_eye), outside, depth, normals);
-            [look.light(angles, &place, &worn, f64::from(CROWDING)), look.sky(&place, &worn)].map(DVec3::from)
+            [look.light(angles, &place, &worn, f64::from(CROWDING)), look.sky(&place, &worn, f64::from(CROWDING))]
+                .map(DVec3::from)
         };
         let mut radiance = frame.ambient.as_dvec3() * radiance_of(normal, outside)[1];
         for light in frame.lights.iter().map(|light| light.at(Vec3::ZERO)) {

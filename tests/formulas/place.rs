@@ -13,8 +13,9 @@ use furrier::hybrid::gpu::layout::{SceneUniform, ViewUniform};
 use furrier::math::hash::Stream;
 use furrier::math::table::Table;
 use furrier::math::{Vec2, Vec3};
-use furrier::volume::march::content::TABLES;
+use furrier::volume::march::content::TABLES as OF_SHELL;
 use furrier::volume::mean;
+use furrier::volume::scene::Above;
 use furrier::volume::shell::prism::{Prism, ShellPoint};
 use furrier::volume::shell::{lattice, sides};
 
@@ -30,6 +31,7 @@ pub const MAIN: Source = Source {
     point_of, unit_or}
 #import furrier::prism::{ShellPoint, barycentric, moved, jacobian, rates_along, to_side_m, inside_of, around_corners, corner_point,
     corners_of}
+#import furrier::fur_light::above_both
 #import furrier::undercoat::{column_over, column_crowding}
 #import furrier::mean_shadow::{mean_depths, tips_m}
 #import furrier::march::{across_edge, next_side}
@@ -72,7 +74,7 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     outputs[first + 5u] = vec4(vec3<f32>(around.corners), length_at(triangle, b));
     outputs[first + 6u] = vec4(around.weights, clump_at(triangle, b));
     outputs[first + 7u] = vec4(corner_point(u32(c.z * f32(corners_of(d))), d), f32(corners_of(d)));
-    outputs[first + 8u] = vec4(normal_at(triangle, b), 0.0);
+    outputs[first + 8u] = vec4(normal_at(triangle, b), above_both(a.x, 0.5 + a.y, 0.03 * a.z));
     outputs[first + 9u] = vec4(lean_at(triangle, b, vec3(1.0)), 0.0);
     outputs[first + 10u] = vec4(tint_at(triangle, b), column_crowding(column_over(triangle, b), a.w));
     outputs[first + 11u] = vec4(point_of(u32(c.z * 100.0)), 0.0);
@@ -99,6 +101,9 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     ),
 };
 
+/// Tables before them: those of the undercoat's shell, and that of hair above.
+const TABLES: usize = OF_SHELL + 1;
+
 /// Columns of the mean shadow per triangle: those of a level split once.
 const COLUMNS: u32 = 6;
 
@@ -119,7 +124,12 @@ fn shaders_and_rust_agree_on_where_things_lie() {
     let mut volume = Undercoat::new(&grown.undercoat_fibre, Some(Pattern::default()));
     (volume.clump_spacing_m, volume.clump_strength) = (4e-3, 0.6);
     let offsets_m: Vec<Vec3> = (0..normals.len()).map(|v| fields.lean[v] * 0.012 * fields.length[v]).collect();
-    let mut uniform = SceneUniform::new(&scene, &scenes::studio(), &Settings::default());
+    let mut uniform = SceneUniform::new(
+        &scene,
+        &Above::new([Some(&grown.guard_fibre), Some(&grown.undercoat_fibre)]),
+        &scenes::studio(),
+        &Settings::default(),
+    );
     (uniform.pattern_amplitude, uniform.pattern_jitter) = (volume.pattern.amplitude, volume.pattern.jitter);
     uniform.pattern_wavelength_m = volume.wavelength_m();
     (uniform.clump_spacing_m, uniform.clump_strength) = (volume.clump_spacing_m, volume.clump_strength);
@@ -191,6 +201,10 @@ fn shaders_and_rust_agree_on_where_things_lie() {
             out[2].w * 100.0,
             100.0 * grown.guard_fibre.height_m().max(grown.undercoat_fibre.height_m()),
         );
+        let above = &tables[OF_SHELL * Table::VALUES..][..Table::VALUES];
+        let share = 0.03 * a.z / (uniform.above_top_m * (0.5 + a.y));
+        let expected = a.x * (0.5 + a.y) * Table::new(|x| above[(x * 256.0).round() as usize]).at(share);
+        worst.note(i, "hair above", out[8].w, expected);
         let table = &tables[(c.z * 3.0) as usize * Table::VALUES..][..Table::VALUES];
         worst.note(i, "table", out[1].w, Table::new(|x| table[(x * 256.0).round() as usize]).at(1.2 * c.w - 0.1));
         let beside = place.moved(Vec3::new(c.z - 0.5, c.w - 0.5, 0.3), 0.5);

@@ -149,13 +149,14 @@ pub fn scale(lobe: &FibreLobe, sine: f32) -> f32 {
     (terms.iter().zip(lobe.scale).map(|(term, factor)| term * f64::from(factor)).sum::<f64>() / (c + w)) as f32
 }
 
-/// Depth that light and eye share, over crowding: 1/(0.18 + 0.735 |sin φ/2| + 20.7 sin² φ/2).
-pub fn hot_spot(cos_azimuth: f32) -> f32 {
+/// Depth that light and eye share, over crowding: 1/(0.18 + 0.735 |sin φ/2| + 20.7 sin² φ/2) + 1.1/cos − 0.65, the light's cosine
+/// being 0.2 at least.
+pub fn gaps(cos_azimuth: f32, light_normal: f32) -> f32 {
     let half = (0.5 * f64::from(cos_azimuth.clamp(-1.0, 1.0)).acos()).sin();
-    (1.0 / (0.18 + 0.735 * half + 20.7 * half * half)) as f32
+    (1.0 / (0.18 + 0.735 * half + 20.7 * half * half) + 1.1 / f64::from(light_normal).max(0.2) - 0.65) as f32
 }
 
-/// What is left of scattered light by half the depth that is more than 1.25 times the hair above, 0.1 at least, on the light's slant.
+/// What is left of scattered light by the depth that is more than 1.25 times the hair above, 0.1 at least, on the light's slant.
 pub fn beyond(above: f32, depth: f32, light_normal: f32) -> f32 {
     let most = f64::from(above).max(LEAST_ABOVE) * MOST_SLANT / f64::from(light_normal).max(LOWEST_LIGHT);
     (-FADING * (f64::from(depth) - most).max(0.0)).exp() as f32

@@ -163,7 +163,7 @@ fn lit<R: Real>(look: &Scattering, numbers: [R; 12]) -> [R; 6] {
     let place = Place::new(angles, light_eye, above, depth, [hair_normal, eye_normal, light_normal]);
     let worn = look.wear([x, y, z]);
     let [a, b, c] = look.light(angles, &place, &worn, crowding);
-    let [d, e, f] = look.sky(&place, &worn);
+    let [d, e, f] = look.sky(&place, &worn, crowding);
     [a, b, c, d, e, f]
 }
 

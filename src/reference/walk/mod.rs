@@ -13,6 +13,7 @@ mod site;
 mod space;
 mod tree;
 
+pub use formulas::FibreWalk;
 pub use noise::Noise;
 pub use site::Fibres;
 
@@ -30,7 +31,6 @@ use crate::math::hash::{Stream, combine, unit_f64};
 use crate::math::{DVec3, Vec3};
 use crate::stage::projection::Projection;
 use crate::volume::scene::{Lighting, Scene};
-use formulas::FibreWalk;
 use hairs::Hairs;
 use noise::Spread;
 use path::Walker;
