@@ -100,6 +100,7 @@ fn a_limb_before_the_light_darkens_what_lies_behind_it_and_nothing_else() {
             if aside < 0.6 * LIMB_M && place.dot(towards) > 0.0 {
                 // Of the light itself, whatever comes from everywhere.
                 let [all, left] = [&bright, &dark].map(|picture| brightness(picture, i) - brightness(&unlit, i));
+                println!("{i}: {left} of {all}, {:.2} of the limb aside", aside / LIMB_M);
                 assert!(left < 0.4 * all && all > 0.0, "{light:?}: {left} of {all} in the shadow at {place}");
                 seen[0] += 1;
             } else if aside > 2.0 * LIMB_M {
