@@ -58,6 +58,7 @@ fn tile_of(preset: &Preset) -> Tile {
         fins: preset.fins,
         skin: Vec3::from(preset.colour.skin),
         lean_deg: preset.groom.lean_deg,
+        looks: None,
     };
     bake(&hair, &recipe)
 }

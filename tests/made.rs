@@ -47,7 +47,7 @@ pub fn tile(seed: u64) -> Tile {
     Tile {
         preset: format!("made {seed}"),
         sampled: if seed.is_multiple_of(2) { Sampled::Skin } else { Sampled::Square },
-        looks: (seed % 3 != 0).then(|| looks(seed)),
+        looks: (!seed.is_multiple_of(3)).then(|| looks(seed)),
         edge_m: 0.008,
         height_m: 0.012,
         shells: ShellStack {
