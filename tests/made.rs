@@ -16,7 +16,7 @@ fn noise(stream: &mut Stream, size: [u32; 2], channels: u32, top: u64) -> Image8
 
 fn looks(seed: u64) -> TileLooks {
     let mut stream = Stream::new(seed + 2);
-    let mut some = || 2.0 * stream.unit() - 1.0;
+    let mut some = || stream.unit();
     TileLooks {
         of: std::array::from_fn(|_| std::array::from_fn::<_, LOOK, _>(|_| std::array::from_fn(|_| some()))),
         crowding: [some(), some()],
@@ -47,7 +47,7 @@ pub fn tile(seed: u64) -> Tile {
     Tile {
         preset: format!("made {seed}"),
         sampled: if seed.is_multiple_of(2) { Sampled::Skin } else { Sampled::Square },
-        looks: (seed % 3 != 0).then(|| looks(seed)),
+        looks: (!seed.is_multiple_of(3)).then(|| looks(seed)),
         edge_m: 0.008,
         height_m: 0.012,
         shells: ShellStack {

@@ -80,7 +80,7 @@ pub fn under(lighting: &Lighting) -> Difference {
 
 fn compared(usual: &Lighting, lighting: &Lighting, change: impl Fn(&mut hybrid::Prepared<'_>)) -> Difference {
     let grown = thin();
-    let film = by_reference(SIZE, &grown, usual, 2, 1);
+    let film = by_reference(SIZE, &grown, usual, 4, 1);
     let scene = grown.scene();
     let mut prepared = hybrid::prepare(&scene, lighting, &hybrid::Settings::best(SIZE)).unwrap();
     change(&mut prepared);
@@ -90,7 +90,7 @@ fn compared(usual: &Lighting, lighting: &Lighting, change: impl Fn(&mut hybrid::
     difference
 }
 
-/// What is off, of a picture of 48² against 2 lines per pixel.
+/// What is off, of a picture of 48² against 4 lines per pixel.
 pub fn fault(difference: &Difference) -> Option<&'static str> {
     let [reference, drawn] = difference.coverage;
     [

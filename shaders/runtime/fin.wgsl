@@ -6,7 +6,7 @@
 #import furrier::looks::layer_looks
 #import furrier::shadow_map::key_share
 #import furrier::constants::{INVISIBLE, LEAST_CLEAR, LEAST_COSINE}
-#import furrier::coat::{CoatVertex, Paint, Root, root_of, depth_of_opacity, presence, closeness}
+#import furrier::coat::{CoatVertex, Paint, Root, root_of, tile, depth_of_opacity, presence, closeness}
 
 // Texels along the edge per texel along the hair that one fetch may average.
 const MAX_STRETCH: f32 = 4.0;
@@ -132,7 +132,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let normal = normalize(in.normal);
     // What stands out at the outline is guard hair.
     let look = 0u;
-    let crowding = layer_looks[arrayLength(&layer_looks) - 1u].crowding;
+    let crowding = layer_looks[tile.layers - 1u].crowding;
     let worn = worn_of(look, surface.rgb * tint.rgb);
     let to_eye = -world_ray;
     let hair_normal = dot(tangent, normal);

@@ -66,7 +66,7 @@ fn shaders_and_rust_agree_on_the_law_of_light() {
 pub fn looks() -> [Scattering; 2] {
     let known = scenes::scattering().undercoat;
     let mut other = known;
-    other.colouring.factors = other.colouring.factors.map(|factor| 2.5 * factor);
+    other.colouring.factors[1] *= 2.5;
     other.law.light[0][0] += 3.0;
     other.fibre.paths[1] += 0.3;
     other.fibre.azimuth.mirror = 0.1;

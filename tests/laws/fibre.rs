@@ -192,20 +192,26 @@ impl Work for Many<'_> {
     }
 }
 
-/// The largest difference of what f32, alone and in lanes, gives for `single` to what f64 gives for `double`, over it and 1e-5.
-pub fn off(single: &Scattering, double: &Scattering) -> f64 {
+/// The largest differences of what f32, alone and in lanes, gives for `single` to what f64 gives for `double`, over it and 1e-5:
+/// anywhere; and where hair and light are nearly in line, or light stands right behind the hair, where |cos(φ/2)| has a kink and
+/// cos φ is a quotient of roundings.
+pub fn off(single: &Scattering, double: &Scattering) -> [f64; 2] {
     let mut stream = Stream::new(11);
-    let cases: Vec<Case> = (0..2000).map(|_| Case::random(&mut stream)).collect();
+    let cases: Vec<Case> = (0..4000).map(|_| Case::random(&mut stream)).collect();
     let numbers: Vec<[f32; 12]> = cases.iter().map(|case| case.numbers().map(|x| x as f32)).collect();
     let wide = lanes::run(Many { look: single, cases: &numbers });
     let one = Many { look: single, cases: &numbers }.run::<Scalar>();
-    let mut most = 0.0_f64;
+    let mut most = [0.0_f64; 2];
     for (i, numbers) in numbers.iter().enumerate() {
-        let truth = lit(double, numbers.map(f64::from));
+        let exact = numbers.map(f64::from);
+        let truth = lit(double, exact);
+        let angles = Angles::new(exact[0], exact[1], exact[3]);
+        let in_line = angles.sin_in.abs().max(angles.sin_out.abs()) > 0.999 || angles.cos_azimuth < -1.0 + 1e-5;
         assert!((0..6).all(|k| wide[i][k].to_bits() == one[i][k].to_bits()), "lanes do not change results");
         for found in [wide[i], lit(single, *numbers)] {
             for (found, truth) in found.into_iter().zip(truth) {
-                most = most.max((f64::from(found) - truth).abs() / (truth + 1e-5));
+                let off = &mut most[usize::from(in_line)];
+                *off = off.max((f64::from(found) - truth).abs() / (truth + 1e-5));
             }
         }
     }
@@ -215,9 +221,9 @@ pub fn off(single: &Scattering, double: &Scattering) -> f64 {
 #[test]
 fn single_precision_and_lanes_agree_with_double() {
     for look in crate::formulas::law::looks() {
-        let off = off(&look, &look);
-        println!("within {off:.1e}");
-        assert!(off < 5e-3, "{off}");
+        let [off, in_line] = off(&look, &look);
+        println!("within {off:.1e}, in line {in_line:.1e}");
+        assert!(off < 5e-3 && in_line < 3e-2, "{off}, in line {in_line}");
     }
     assert_eq!(f32::of(0.5).sqrt(), 0.5_f32.sqrt());
 }

@@ -1,7 +1,7 @@
 //! Fibres from what a preset says.
 
 use super::azimuth::{Around, Azimuth};
-use super::scale::{scaled, sent, shares};
+use super::scale::{fitted, scaled, sent, shares};
 use super::simulate::{self, Class, SLANTS, concentration, simulate};
 use super::{Fibre, FibreLobe, FibreModel, FibreParameters, LOBES};
 use crate::math::solve::least_squares;
@@ -52,11 +52,13 @@ fn medullated(p: &FibreParameters) -> Fibre {
     let tilt = f64::from(p.tilt_deg).to_radians();
     let [r, tt, trt] = variances(f64::from(p.roughness));
     let own = if medulla.along > 1e-3 { (0.25 / medulla.along).max(LEAST_MEDULLA) } else { EVEN };
+    // Without a medulla the fourth lobe is what the others leave over, which goes through as they do.
+    let own_path = if medulla.share.iter().sum::<f64>() > 0.0 { medulla.path } else { through.path };
     let lobe = |class: &Class, tilt, variance| scaled(tilt, variance, &shares(|sine| at(&class.share, sine)));
     let cuticle = [lobe(surface, -tilt, r), lobe(through, 0.5 * tilt, tt), lobe(inner, 1.5 * tilt, trt)];
     Fibre {
         lobes: filled(cuticle, own, 1.0),
-        paths: classes.map(|class| class.path as f32),
+        paths: [surface.path, through.path, inner.path, own_path].map(|path| path as f32),
         azimuth,
         inverse_index_squared: 1.0 / (p.index * p.index),
     }
@@ -71,9 +73,12 @@ fn filled(lobes: [FibreLobe; 3], variance: f64, albedo: f64) -> [FibreLobe; LOBE
     let most = sum.iter().fold(0.0_f64, |most, &x| most.max(x));
     let less = (albedo * (1.0 - LEFT_OVER) / most).min(1.0);
     let lobes = lobes.map(|lobe| FibreLobe { scale: lobe.scale.map(|x| x * less.sqrt() as f32), ..lobe });
-    let rest = sum.iter().map(|x| (albedo - x * less).max(1e-9)).collect();
+    let rest: Vec<f64> = sum.iter().map(|x| (albedo - x * less).max(1e-9)).collect();
+    // Errors of what all lobes send together are to be small.
+    let mean = rest.iter().sum::<f64>() / rest.len() as f64;
+    let by = rest.iter().map(|rest| 0.5 * (rest + mean)).collect();
     let [a, b, c] = lobes;
-    [a, b, c, scaled(0.0, variance, &rest)]
+    [a, b, c, fitted(0.0, variance, &rest, &by)]
 }
 
 /// Least share of light that is left to the fourth lobe.

@@ -64,6 +64,11 @@ pub(super) fn sent(lobe: &FibreLobe) -> Shares {
 /// its tilt: narrow and tilted it cannot be reciprocal and have the same share on both sides, as light that it takes from a
 /// low angle to a high one leaves through a wider cone than it came by.
 pub(super) fn scaled(tilt_rad: f64, variance: f64, shares: &Shares) -> FibreLobe {
+    fitted(tilt_rad, variance, shares, shares)
+}
+
+/// The same where errors count over `by`: those of a lobe that is little of all light need not be as small as its share is.
+pub(super) fn fitted(tilt_rad: f64, variance: f64, shares: &Shares, by: &Shares) -> FibreLobe {
     let start = FibreLobe {
         tilt: 0.0,
         sharpness: (1.0 / variance) as f32,
@@ -92,9 +97,8 @@ pub(super) fn scaled(tilt_rad: f64, variance: f64, shares: &Shares) -> FibreLobe
                 }
                 let (here, around) = (dot(&scale, &own[o]), dot(&scale, &sums));
                 // By how much the sent share changes with each factor, and what is missing of it.
-                let change: [f64; SCALE_TERMS] =
-                    std::array::from_fn(|t| (here * sums[t] + own[o][t] * around) / shares[o]);
-                (change, 1.0 - here * around / shares[o])
+                let change: [f64; SCALE_TERMS] = std::array::from_fn(|t| (here * sums[t] + own[o][t] * around) / by[o]);
+                (change, (shares[o] - here * around) / by[o])
             })
             .collect();
         let step = least_squares(&rows);

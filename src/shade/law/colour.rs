@@ -13,9 +13,9 @@ const PHOTONS: usize = 60_000;
 /// Lean and spread of the fur that colours are meant for, degrees.
 const STAND_DEG: [f64; 2] = [37.0, 10.0];
 /// Absorptions tried, in eights.
-const EIGHTS: usize = 3;
+const EIGHTS: usize = 4;
 /// Least and greatest of them, per radius.
-const ABSORPTIONS: [f64; 2] = [2e-4, 40.0];
+const ABSORPTIONS: [f64; 2] = [2e-6, 20.0];
 /// ln of the least and greatest absorption that a colour may need.
 pub const LOG_ABSORPTIONS: [f64; 2] = [-14.0, 4.0];
 /// How near a colour comes to the darkest and lightest that a fibre reaches.
