@@ -63,6 +63,8 @@ fn stored_shadows_are_linear_between_corners_and_levels() {
 fn mean_shadow_is_a_flat_layers_far_from_borders_and_nothing_on_one_towards_the_light() {
     let (mut guard, mut undercoat) = scenes::mink();
     (guard.density_per_cm2, undercoat.density_per_cm2) = (30.0, 900.0);
+    // Widths at heights are told by straight hair.
+    (guard.taper, guard.tip_transparency) = (1.0, 0.0);
     (guard.shape.jitter_deg, undercoat.shape.jitter_deg) = (0.0, 0.0);
     let mesh = scenes::grid(12, 12, |u, v| Vec3::new((u - 0.5) * 0.6, 0.0, (0.5 - v) * 0.6));
     let grown = Grown::new(mesh, &guard, &undercoat, Vec3::X, 0.0, 3);

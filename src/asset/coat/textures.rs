@@ -79,11 +79,16 @@ fn looks(at: &At<'_>, layers: usize) -> Result<TileLooks> {
         let numbers = list(key, 4 * LOOK)?;
         Ok(std::array::from_fn(|row| std::array::from_fn(|i| numbers[4 * row + i])))
     };
-    let crowding = list("crowding", 2)?;
+    let within = |key: &str, count: usize, most: f32| -> Result<Vec<f32>> {
+        let found = list(key, count)?;
+        let fits = found.iter().all(|number| (0.0..=most).contains(number));
+        if fits { Ok(found) } else { Err(at.need(key)?.fault(&format!("numbers from 0 to {most}"))) }
+    };
+    let crowding = within("crowding", 2, f32::MAX)?;
     Ok(TileLooks {
         of: [look("guard")?, look("undercoat")?],
         crowding: [crowding[0], crowding[1]],
-        undercoat_share: list("undercoatShare", layers)?,
+        undercoat_share: within("undercoatShare", layers, 1.0)?,
     })
 }
 
