@@ -6,7 +6,7 @@ use furrier::bake::picture::{self as depicted, Only, PictureRequest};
 use furrier::data::camera::Camera;
 use furrier::data::film::Film;
 use furrier::data::image::Image8;
-use furrier::data::light::{Directional, Point, Spot, luminance};
+use furrier::data::light::{Directional, Point, Spot};
 use furrier::fur::groom::Clump;
 use furrier::gpu::{Choice, Gpu};
 use furrier::hybrid::device::{Device, Drawn, with_fallback};
@@ -45,14 +45,7 @@ fn hold(scene: &Scene<'_>, lighting: &Lighting, camera: &Camera, settings: &Sett
     let gpu = on_gpu(scene, lighting, camera, settings);
     let (a, b) = (developed(&cpu), developed(&gpu));
     let share = share_alike(&a, &b);
-    // At one exposure whatever the light: fur's mean luminance at a quarter.
-    let light: f32 = cpu.radiance.iter().map(|&radiance| luminance(radiance)).sum();
-    let factor = 0.25 * cpu.alpha.iter().sum::<f32>() / light;
-    let exposed = |film: &Film| {
-        let radiance = film.radiance.iter().map(|radiance| *radiance * factor).collect();
-        LinearImage::from(&Film { radiance, ..film.clone() })
-    };
-    let flip = compare(&exposed(&cpu), &exposed(&gpu)).unwrap().flip;
+    let flip = compare(&LinearImage::from(&cpu), &LinearImage::from(&gpu)).unwrap().flip;
     let mean = |of: &dyn Fn(usize) -> f32| (0..cpu.alpha.len()).map(of).sum::<f32>() / cpu.alpha.len() as f32;
     println!(
         "{share:.5} of the pixels alike, FLIP {flip:.5}, coverage {:.4} and {:.4}",

@@ -3,7 +3,7 @@
 #define_import_path furrier::law
 
 #import furrier::law_constants::{BRIGHTEST, COLOUR_NEAR, DEEPEST_LAW, FADING, LEAST_ABOVE, LEAST_LOG_ABSORPTION, LOWEST_EYE, LOWEST_LIGHT,
-    MOST_LOG_ABSORPTION, MOST_SLANT, SLANT_LEAST, SLANT_MOST}
+    MOST_LOG_ABSORPTION, MOST_SLANT, SLANT_LEAST, SLANT_MOST, THIN, USUAL}
 #import furrier::looks::looks
 
 // Between a hair, light and eye; directions point away from the hair.
@@ -130,7 +130,8 @@ fn law_light(which: u32, place: HairPlace, angles: Angles) -> vec4<f32> {
     let ct = place.hair_normal;
     let cv = clamp(place.eye_normal, LOWEST_EYE, 1.0);
     let cl = clamp(place.light_normal, LOWEST_LIGHT, 1.0);
-    let across = place.depth * cl / max(place.above, 1e-4);
+    // Where next to nothing lies above, its quotients say nothing.
+    let across = (place.depth * cl + THIN * USUAL) / (max(place.above, 0.0) + THIN);
     let slant = clamp(log(max(across, 1e-3)), SLANT_LEAST, SLANT_MOST) - log(cl);
     let pq = p * q;
     let qq = q * q;

@@ -61,7 +61,7 @@ impl Settings {
         Self {
             size,
             hair_px: 0.5,
-            opaque: 0.0125,
+            opaque: 0.006,
             stepping: Stepping { depth: 0.5, layers: 2.0 },
             resolution: Resolution { subelement_px: 3.0, ..Resolution::default() },
             shadow_span: f32::INFINITY,

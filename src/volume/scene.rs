@@ -149,19 +149,22 @@ impl Kind {
         }
     }
 
-    /// Over lengths of normal distribution, cut where the longest and shortest hairs are.
+    /// Over lengths of normal distribution; those beyond the longest and shortest hairs count there.
     fn above(&self, height_m: f32) -> f32 {
-        let (mut sum, mut weights) = (0.0, 0.0);
-        for i in 0..STEPS {
-            let z = LENGTH_SPREAD * (2.0 * (i as f32 + 0.5) / STEPS as f32 - 1.0);
-            let (weight, length_m) = (libm::expf(-0.5 * z * z), self.length_m * (1.0 + z * self.variation));
+        let of = |z: f32| {
+            let length_m = self.length_m * (1.0 + z * self.variation);
             let at = (height_m / (length_m * self.rise).max(f32::MIN_POSITIVE) * STEPS as f32).clamp(0.0, STEPS as f32);
             let low = (at as usize).min(STEPS - 1);
-            let left_m = self.left_m[low] + (at - low as f32) * (self.left_m[low + 1] - self.left_m[low]);
-            sum += weight * length_m * left_m;
-            weights += weight;
-        }
-        self.density_per_m2 * sum / weights
+            length_m * (self.left_m[low] + (at - low as f32) * (self.left_m[low + 1] - self.left_m[low]))
+        };
+        let step = 2.0 * LENGTH_SPREAD / STEPS as f32;
+        let beyond = 0.5 * libm::erfcf(LENGTH_SPREAD * std::f32::consts::FRAC_1_SQRT_2);
+        let ends = beyond * (of(-LENGTH_SPREAD) + of(LENGTH_SPREAD));
+        let within = (0..STEPS).map(|i| {
+            let z = -LENGTH_SPREAD + (i as f32 + 0.5) * step;
+            0.398_942_3 * libm::expf(-0.5 * z * z) * step * of(z)
+        });
+        self.density_per_m2 * (ends + within.sum::<f32>())
     }
 }
 

@@ -15,6 +15,10 @@ pub const COLOUR_TERMS: usize = 4;
 pub const DEEPEST: f64 = 16.0;
 /// ln of the least and greatest depth that it was, over that of hair at a right angle to the light.
 pub const SLANTS: [f64; 2] = [-2.0, 0.2];
+/// Hair area above at which depth counts half for how much the light's way is on a slant.
+pub const THIN: f64 = 0.03;
+/// Depth per hair area at a right angle that stands in where there is none above.
+pub const USUAL: f64 = 0.8;
 /// Least cosine of light to the normal that it was.
 pub const LOWEST_LIGHT: f64 = 0.06;
 /// Least cosine of an eye.
@@ -40,7 +44,9 @@ pub(super) fn light<R: Real>(place: &Place<R>) -> [R; TERMS] {
     let ct = place.hair_normal;
     let cv = within(place.eye_normal, LOWEST_EYE, 1.0);
     let cl = within(place.light_normal, LOWEST_LIGHT, 1.0);
-    let across = place.depth * cl / place.above.max(R::of(1e-4));
+    // Where next to nothing lies above, its quotients say nothing.
+    let (thin, usual) = (R::of(THIN), R::of(THIN * USUAL));
+    let across = (place.depth * cl + usual) / (place.above.max(R::of(0.0)) + thin);
     let slant = within(across.max(R::of(1e-3)).ln(), SLANTS[0], SLANTS[1]) - cl.ln();
     let (pq, qq, x2) = (p * q, q * q, x * x);
     let slanted = slant * cl;
