@@ -107,5 +107,6 @@ fn what_strands_let_through_tells_a_mip_whose_gains_are_left_out() {
 fn the_reference_sees_hair_without_its_shadow_in_the_mean() {
     let difference =
         crate::oracle::changed_against_reference(&crate::scenes::studio(), |prepared| prepared.mean = None);
-    assert_eq!(crate::oracle::fault(&difference), Some("bias"));
+    // Light that comes straight and light that was scattered before make up for each other in the mean, not from place to place.
+    assert_eq!(crate::oracle::fault(&difference), Some("flip"));
 }
