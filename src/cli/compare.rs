@@ -26,18 +26,24 @@ pub struct Compare {
     max_flip: Option<f64>,
 }
 
+/// Whether a limit on FLIP is one.
+pub(super) fn check_limit(limit: Option<f64>) -> Result<()> {
+    match limit.filter(|limit| !(0.0..=1.0).contains(limit)) {
+        Some(limit) => Err(Error::usage("the limit is out of range")
+            .with_field("--max-flip")
+            .with_found(limit)
+            .with_expected("a number from 0 to 1")),
+        None => Ok(()),
+    }
+}
+
 impl Compare {
     /// Prints the measures.
     ///
     /// # Errors
     /// Where a picture cannot be read, sizes differ, or FLIP is over the limit.
     pub fn run(self, console: &Console) -> Result<()> {
-        if let Some(limit) = self.max_flip.filter(|limit| !(0.0..=1.0).contains(limit)) {
-            return Err(Error::usage("the limit is out of range")
-                .with_field("--max-flip")
-                .with_found(limit)
-                .with_expected("a number from 0 to 1"));
-        }
+        check_limit(self.max_flip)?;
         let (reference, other) = (load(&self.a)?, load(&self.b)?);
         let difference = compare(&reference, &other).map_err(|e| e.with_file(&self.b))?;
         console.result(&difference, |out| print(&difference, out))?;

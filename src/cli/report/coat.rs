@@ -6,6 +6,7 @@ use crate::asset::write;
 use crate::bake::picture::{Only, PictureRequest};
 use crate::bake::{Method, Request, bake};
 use crate::cli::bake::{Layout, UnitName};
+use crate::cli::compare::check_limit;
 use crate::cli::console::Console;
 use crate::cli::output;
 use crate::cli::stage::size;
@@ -96,12 +97,7 @@ impl Coat {
     /// # Errors
     /// Where the input or an option cannot be used, there is no adapter, a file cannot be written, or the limit is exceeded.
     pub fn run(self, console: &Console) -> Result<()> {
-        if let Some(limit) = self.max_flip.filter(|limit| !(0.0..=1.0).contains(limit)) {
-            return Err(Error::usage("the limit is out of range")
-                .with_field("--max-flip")
-                .with_found(limit)
-                .with_expected("a number from 0 to 1"));
-        }
+        check_limit(self.max_flip)?;
         let [csv, svg, png_file] = checked_outputs(&self.output, &self.input)?;
         let size = size(&self.size)?;
         let distances = views::parse(&self.distances, self.views)?;
