@@ -4,8 +4,9 @@
 #import furrier::light::light_at
 #import furrier::camera::view
 #import furrier::guard::{guard_ramp, root_of}
-#import furrier::fur_light::{slant_depth, terminator, above_both}
-#import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, worn_of}
+#import furrier::fur_light::{slant_depth, terminator}
+#import furrier::scene::above_both
+#import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, seen_of, worn_of}
 #import furrier::mean_shadow::{mean_depths, tips_m}
 #import furrier::undercoat_light::key_depth
 
@@ -59,6 +60,7 @@ fn log_radiance_at(strand: Strand, first: u32, i: u32) -> vec3<f32> {
         let eye_hair = clamp(dot(along, to_eye), -1.0, 1.0);
         sum = scene.ambient * lit_by_sky(0u, above, eye_hair, hair_normal, eye_normal, worn, crowding);
     }
+    let seen = seen_of(0u, above, clamp(dot(along, to_eye), -1.0, 1.0), hair_normal, eye_normal);
     for (var k = 0u; k < scene.light_count; k++) {
         let light = light_at(lights[k], point_m);
         var open = 1.0;
@@ -74,7 +76,7 @@ fn log_radiance_at(strand: Strand, first: u32, i: u32) -> vec3<f32> {
         }
         let angles = angles_of(along, light.to_light, to_eye);
         let place = HairPlace(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, dot(light.to_light, normal));
-        sum += light.irradiance * open * lit(0u, angles, place, worn, crowding);
+        sum += light.irradiance * open * lit(seen, angles, place, worn, crowding);
     }
     return log(max(sum, vec3(1.1754944e-38)));
 }

@@ -2,7 +2,6 @@
 #define_import_path furrier::fur_light
 
 #import furrier::constants::{DEEPEST_HAIR, HORIZON, PI}
-#import furrier::scene::{scene, table_at}
 
 
 // Optical depth towards a light through a flat layer with hair area `above` per skin area.
@@ -20,9 +19,4 @@ fn terminator(to_light: vec3<f32>, normal: vec3<f32>) -> f32 {
 // Optical depth towards the whole sky.
 fn sky_depth(above: f32) -> f32 {
     return min(1.5 * 0.25 * PI * above, DEEPEST_HAIR);
-}
-
-// Hair area of both kinds above `height_m` per skin area.
-fn above_both(density: f32, length: f32, height_m: f32) -> f32 {
-    return density * length * table_at(3u, height_m / max(scene.above_top_m * length, 1e-30));
 }

@@ -3,7 +3,7 @@
 #define_import_path furrier::law
 
 #import furrier::law_constants::{BRIGHTEST, COLOUR_NEAR, DEEPEST_LAW, FADING, LEAST_ABOVE, LEAST_LOG_ABSORPTION, LOWEST_EYE, LOWEST_LIGHT,
-    MOST_LOG_ABSORPTION, MOST_SLANT, SLANT_LEAST, SLANT_MOST, THIN, USUAL}
+    MOST_KNOWN, MOST_LOG_ABSORPTION, MOST_SLANT, SLANT_LEAST, SLANT_MOST, THIN, USUAL}
 #import furrier::looks::looks
 
 // Between a hair, light and eye; directions point away from the hair.
@@ -75,8 +75,53 @@ fn crossing(which: u32, sine: f32) -> f32 {
     return 1.0 / sqrt(max(1.0 - sine * sine * looks[which].rest.y, 0.01));
 }
 
+// What of a hair's light hangs on eye and place alone, whichever light falls on it.
+struct Seen {
+    which: u32,
+    // D of each lobe towards the eye, and how much longer the way out is.
+    scales: vec4<f32>,
+    crossing: f32,
+    // Root of the hair area above.
+    x: f32,
+    // Sums of the law's terms: of those without a light; of those with the slant; with the light's height; with l·t and its square;
+    // with the slant's square.
+    plain: vec4<f32>,
+    by_slant: vec4<f32>,
+    by_height: vec4<f32>,
+    by_along: vec4<f32>,
+    by_along_squared: vec4<f32>,
+    by_slant_squared: vec4<f32>,
+}
+
+fn seen_of(which: u32, above: f32, eye_hair: f32, hair_normal: f32, eye_normal: f32) -> Seen {
+    let co = cos_of(eye_hair);
+    var scales = vec4(0.0);
+    for (var i = 0u; i < 4u; i++) {
+        scales[i] = lobe_scale(looks[which].lobes[i].even, looks[which].lobes[i].odd, looks[which].lobes[i].last, eye_hair, co);
+    }
+    let x = sqrt(clamp(above, 1e-4, DEEPEST_LAW));
+    let x2 = x * x;
+    let q = eye_hair;
+    let qq = q * q;
+    let ct = hair_normal;
+    let cv = clamp(eye_normal, LOWEST_EYE, 1.0);
+    var plain = looks[which].light[0];
+    plain += looks[which].light[1] * x;
+    plain += looks[which].light[3] * x2;
+    plain += looks[which].light[10] * (x2 * x);
+    plain += looks[which].light[14] * (ct * ct);
+    plain += looks[which].light[15] * (x * q * ct);
+    let by_slant = looks[which].light[4] * x2 + looks[which].light[7] * x + looks[which].light[8] * cv + looks[which].light[11] * qq;
+    let by_height = looks[which].light[2] + looks[which].light[17] * (qq * ct) + looks[which].light[21] * (q * ct);
+    let by_along = looks[which].light[6] * q;
+    let by_along_squared = looks[which].light[16] * qq + looks[which].light[18];
+    let by_slant_squared = looks[which].light[19] * x2;
+    return Seen(which, scales, crossing(which, q), x, plain, by_slant, by_height, by_along, by_along_squared, by_slant_squared);
+}
+
 // S, 1/sr, per channel.
-fn fibre_scatter(which: u32, angles: Angles, absorption: vec3<f32>) -> vec3<f32> {
+fn fibre_scatter(seen: Seen, angles: Angles, absorption: vec3<f32>) -> vec3<f32> {
+    let which = seen.which;
     let si = angles.sin_in;
     let so = angles.sin_out;
     let ci = cos_of(si);
@@ -85,7 +130,7 @@ fn fibre_scatter(which: u32, angles: Angles, absorption: vec3<f32>) -> vec3<f32>
     let sin_sum = si * co + ci * so;
     let level = sqrt(ci * co);
     let around = around_hair(which, angles.cos_azimuth);
-    let way = 0.5 * (crossing(which, si) + crossing(which, so));
+    let way = absorption * (0.5 * (crossing(which, si) + seen.crossing));
     var sum = vec3(0.0);
     for (var i = 0u; i < 4u; i++) {
         let even = looks[which].lobes[i].even;
@@ -93,12 +138,11 @@ fn fibre_scatter(which: u32, angles: Angles, absorption: vec3<f32>) -> vec3<f32>
         let last = looks[which].lobes[i].last;
         let tilt = last.z * level;
         let kernel = exp(last.w * min(cos_sum - 1.0 + tilt * (sin_sum - 0.5 * tilt), 0.0));
-        let scale = lobe_scale(even, odd, last, si, ci) * lobe_scale(even, odd, last, so, co);
-        let sent = around[i] * scale * kernel;
+        let sent = around[i] * lobe_scale(even, odd, last, si, ci) * seen.scales[i] * kernel;
         if i == 0u {
             sum += vec3(sent);
         } else {
-            sum += sent * exp(-absorption * (looks[which].paths[i] * way));
+            sum += sent * exp(-looks[which].paths[i] * way);
         }
     }
     return sum;
@@ -122,43 +166,19 @@ fn of_colour(cubic: vec4<f32>, logit: vec3<f32>, most: f32) -> vec3<f32> {
 }
 
 // ln of what a hair sends towards the eye per irradiance, of light scattered twice or more: a cubic in the colour's logit.
-fn law_light(which: u32, place: HairPlace, angles: Angles) -> vec4<f32> {
-    let x = sqrt(clamp(place.above, 1e-4, DEEPEST_LAW));
+fn law_light(seen: Seen, place: HairPlace, angles: Angles) -> vec4<f32> {
+    let which = seen.which;
     let p = angles.sin_in;
-    let q = angles.sin_out;
-    let k = place.light_eye - p * q;
-    let ct = place.hair_normal;
-    let cv = clamp(place.eye_normal, LOWEST_EYE, 1.0);
+    let k = place.light_eye - p * angles.sin_out;
     let cl = clamp(place.light_normal, LOWEST_LIGHT, 1.0);
     // Where next to nothing lies above, its quotients say nothing.
     let across = (place.depth * cl + THIN * USUAL) / (max(place.above, 0.0) + THIN);
     let slant = clamp(log(max(across, 1e-3)), SLANT_LEAST, SLANT_MOST) - log(cl);
-    let pq = p * q;
-    let qq = q * q;
-    let x2 = x * x;
     let slanted = slant * cl;
-    var sum = looks[which].light[0];
-    sum += looks[which].light[1] * x;
-    sum += looks[which].light[2] * cl;
-    sum += looks[which].light[3] * x2;
-    sum += looks[which].light[4] * (x2 * slant);
-    sum += looks[which].light[5] * slanted;
-    sum += looks[which].light[6] * pq;
-    sum += looks[which].light[7] * (x * slant);
-    sum += looks[which].light[8] * (slant * cv);
-    sum += looks[which].light[9] * (slanted * cl);
-    sum += looks[which].light[10] * (x2 * x);
-    sum += looks[which].light[11] * (slant * qq);
-    sum += looks[which].light[12] * k;
-    sum += looks[which].light[13] * (x * slant * slanted);
-    sum += looks[which].light[14] * (ct * ct);
-    sum += looks[which].light[15] * (x * q * ct);
-    sum += looks[which].light[16] * (pq * pq);
-    sum += looks[which].light[17] * (qq * ct * cl);
-    sum += looks[which].light[18] * (p * p);
-    sum += looks[which].light[19] * (x2 * slant * slant);
-    sum += looks[which].light[20] * (cl * cl);
-    sum += looks[which].light[21] * (q * ct * cl);
+    var sum = seen.plain + seen.by_slant * slant + seen.by_height * cl + p * (seen.by_along + p * seen.by_along_squared);
+    sum += slant * slant * seen.by_slant_squared;
+    sum += slanted * (looks[which].light[5] + looks[which].light[9] * cl + looks[which].light[13] * (seen.x * slant));
+    sum += looks[which].light[12] * k + looks[which].light[20] * (cl * cl);
     return sum;
 }
 
@@ -193,18 +213,20 @@ fn gaps(cos_azimuth: f32, light_normal: f32) -> f32 {
     return both + 1.1 / max(light_normal, 0.2) - 0.65;
 }
 
-// What is left of scattered light where more lies before the light than in any slab.
+// What is left of scattered light where more lies before the light than in any slab: the less the further the light is below the
+// horizon.
 fn beyond(place: HairPlace) -> f32 {
-    let level = max(place.light_normal, LOWEST_LIGHT);
-    return exp(-FADING * max(place.depth - max(place.above, LEAST_ABOVE) * MOST_SLANT / level, 0.0));
+    let level = abs(place.light_normal - LOWEST_LIGHT) + LOWEST_LIGHT;
+    let known = min(max(place.above, LEAST_ABOVE) * MOST_SLANT / level, MOST_KNOWN);
+    return exp(-FADING * max(place.depth - known, 0.0));
 }
 
 // Radiance towards the eye per irradiance of one light; `crowding` is hair area per volume times diameter.
-fn lit(which: u32, angles: Angles, place: HairPlace, worn: Worn, crowding: f32) -> vec3<f32> {
+fn lit(seen: Seen, angles: Angles, place: HairPlace, worn: Worn, crowding: f32) -> vec3<f32> {
     let shared_depth = min(crowding * gaps(angles.cos_azimuth, place.light_normal), place.depth);
     let arriving = cos_of(angles.sin_in) * exp(shared_depth - place.depth);
-    let multiple = of_colour(law_light(which, place, angles), worn.logit, BRIGHTEST) * beyond(place);
-    return fibre_scatter(which, angles, worn.absorption) * arriving + multiple;
+    let multiple = of_colour(law_light(seen, place, angles), worn.logit, BRIGHTEST) * beyond(place);
+    return fibre_scatter(seen, angles, worn.absorption) * arriving + multiple;
 }
 
 // Radiance towards the eye per radiance of a sky that is everywhere the same.

@@ -173,3 +173,8 @@ fn unit_or(v: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {
     let size = length(v);
     return select(otherwise, v / size, size > 1e-30);
 }
+
+// Hair area of both kinds above `height_m` per skin area.
+fn above_both(density: f32, length: f32, height_m: f32) -> f32 {
+    return density * length * table_at(3u, height_m / max(scene.above_top_m * length, 1e-30));
+}

@@ -4,7 +4,8 @@
 #import furrier::constants::PI
 #import furrier::scene::{scene, lights, position_at, normal_at, lean_at, tint_at, density_at, length_at}
 #import furrier::light::light_at
-#import furrier::fur_light::{above_both, sky_depth, slant_depth, terminator}
+#import furrier::fur_light::{sky_depth, slant_depth, terminator}
+#import furrier::scene::above_both
 #import furrier::mean_shadow::{mean_depths, tips_m}
 
 struct SkinLook {

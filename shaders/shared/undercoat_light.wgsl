@@ -7,7 +7,7 @@
 #import furrier::march::Step
 #import furrier::light::light_at
 #import furrier::fur_light::{slant_depth, terminator}
-#import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, worn_of}
+#import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, seen_of, worn_of}
 
 // Bytes by level, then corner of sub-elements; of all prisms one after the other.
 @group(1) @binding(1) var<storage, read> shadow: array<u32>;
@@ -62,6 +62,7 @@ fn undercoat_light(taken: Step, origin_m: vec3<f32>, direction: vec3<f32>) -> Ap
         let eye_hair = clamp(dot(taken.hair, to_eye), -1.0, 1.0);
         radiance = scene.ambient * lit_by_sky(1u, above, eye_hair, hair_normal, eye_normal, worn, scene.undercoat_crowding);
     }
+    let seen = seen_of(1u, above, clamp(dot(taken.hair, to_eye), -1.0, 1.0), hair_normal, eye_normal);
     for (var i = 0u; i < scene.undercoat_light_count; i++) {
         let light = light_at(lights[i], middle_m);
         var open = 1.0;
@@ -77,7 +78,7 @@ fn undercoat_light(taken: Step, origin_m: vec3<f32>, direction: vec3<f32>) -> Ap
         }
         let angles = angles_of(taken.hair, light.to_light, to_eye);
         let place = HairPlace(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, dot(light.to_light, normal));
-        radiance += light.irradiance * open * lit(1u, angles, place, worn, scene.undercoat_crowding);
+        radiance += light.irradiance * open * lit(seen, angles, place, worn, scene.undercoat_crowding);
     }
     return Appearance(albedo, radiance);
 }

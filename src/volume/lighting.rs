@@ -6,10 +6,10 @@ use crate::data::mesh::Mesh;
 use crate::gpu::Constant::{self, F32};
 use crate::math::Vec3;
 use crate::shade::law::polynomial::{DEEPEST, LOWEST_EYE, LOWEST_LIGHT, SLANTS, THIN, USUAL};
-use crate::shade::law::{BRIGHTEST, FADING, LEAST_ABOVE, MOST_SLANT, colour};
+use crate::shade::law::{BRIGHTEST, FADING, LEAST_ABOVE, MOST_KNOWN, MOST_SLANT, colour};
 
 /// What the law of light in Rust and in shaders both need: the module `furrier::law_constants`.
-pub const LAW_CONSTANTS: [Constant; 14] = [
+pub const LAW_CONSTANTS: [Constant; 15] = [
     F32("COLOUR_NEAR", colour::NEAR as f32),
     F32("LEAST_LOG_ABSORPTION", colour::LOG_ABSORPTIONS[0] as f32),
     F32("MOST_LOG_ABSORPTION", colour::LOG_ABSORPTIONS[1] as f32),
@@ -22,6 +22,7 @@ pub const LAW_CONSTANTS: [Constant; 14] = [
     F32("USUAL", USUAL as f32),
     F32("LEAST_ABOVE", LEAST_ABOVE as f32),
     F32("MOST_SLANT", MOST_SLANT as f32),
+    F32("MOST_KNOWN", MOST_KNOWN as f32),
     F32("FADING", FADING as f32),
     F32("BRIGHTEST", BRIGHTEST as f32),
 ];

@@ -18,7 +18,7 @@ pub const MAIN: Source = Source {
     text: Text::Wgsl(
         "
 #import furrier::law::{HairPlace, angles_of, cos_of, worn_of, around_hair, lobe_scale, crossing, fibre_scatter, of_colour, law_light,
-    law_sky, gaps, beyond, lit, lit_by_sky}
+    law_sky, gaps, beyond, lit, lit_by_sky, seen_of}
 #import furrier::looks::looks
 
 @group(1) @binding(0) var<storage, read> inputs: array<vec4<f32>>;
@@ -37,17 +37,18 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let angles = angles_of(hair, light, eye);
     let place = HairPlace(inputs[i].w, inputs[i + 1u].w, dot(light, eye), dot(hair, normal), dot(eye, normal), dot(light, normal));
     let worn = worn_of(which, colour);
+    let seen = seen_of(which, place.above, angles.sin_out, place.hair_normal, place.eye_normal);
     let lobe = looks[which].lobes[id.x / 2u % 4u];
     let first = 12u * id.x;
     outputs[first] = vec4(angles.sin_in, angles.sin_out, angles.cos_azimuth, cos_of(angles.sin_in));
     outputs[first + 1u] = vec4(log(worn.absorption), crossing(which, angles.sin_in));
     outputs[first + 2u] = vec4(worn.logit, lobe_scale(lobe.even, lobe.odd, lobe.last, angles.sin_in, cos_of(angles.sin_in)));
     outputs[first + 3u] = around_hair(which, angles.cos_azimuth);
-    outputs[first + 4u] = vec4(fibre_scatter(which, angles, worn.absorption), gaps(angles.cos_azimuth, place.light_normal));
-    outputs[first + 5u] = law_light(which, place, angles);
+    outputs[first + 4u] = vec4(fibre_scatter(seen, angles, worn.absorption), gaps(angles.cos_azimuth, place.light_normal));
+    outputs[first + 5u] = law_light(seen, place, angles);
     outputs[first + 6u] = law_sky(which, place.above, angles.sin_out, place.hair_normal, place.eye_normal);
     outputs[first + 7u] = vec4(of_colour(inputs[i + 3u] - vec4(3.0, 0.0, 0.0, 0.0), worn.logit, -1.0), beyond(place));
-    outputs[first + 8u] = vec4(lit(which, angles, place, worn, crowding), 0.0);
+    outputs[first + 8u] = vec4(lit(seen, angles, place, worn, crowding), 0.0);
     outputs[first + 9u] = vec4(lit_by_sky(which, place.above, angles.sin_out, place.hair_normal, place.eye_normal, worn, 0.3), 0.0);
     outputs[first + 10u] = vec4(looks[which].lobes[3].last.xyz, looks[which].rest.x);
     outputs[first + 11u] = looks[which].paths;

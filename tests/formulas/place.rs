@@ -31,7 +31,7 @@ pub const MAIN: Source = Source {
     point_of, unit_or}
 #import furrier::prism::{ShellPoint, barycentric, moved, jacobian, rates_along, to_side_m, inside_of, around_corners, corner_point,
     corners_of}
-#import furrier::fur_light::above_both
+#import furrier::scene::above_both
 #import furrier::undercoat::{column_over, column_crowding}
 #import furrier::mean_shadow::{mean_depths, tips_m}
 #import furrier::march::{across_edge, next_side}

@@ -22,7 +22,7 @@ use std::sync::OnceLock;
 use std::time::Instant;
 
 /// Raised whenever `final` draws another picture of the same fur, so that none of an earlier one is taken for it.
-const EPOCH: u32 = 1;
+const EPOCH: u32 = 2;
 
 /// What grows and what draws it; it grows when it is first needed.
 pub struct Fur {

@@ -49,17 +49,22 @@ impl<R: Real> Place<R> {
         Self { above, depth, light_hair, eye_hair, light_eye, hair_normal, eye_normal, light_normal }
     }
 
-    /// What is left of scattered light where more lies before the light than in any slab: behind a limb, say.
+    /// What is left of scattered light where more lies before the light than in any slab: behind a limb, say. The less the further the
+    /// light is below the horizon.
     #[inline(always)]
     fn beyond(&self) -> R {
-        let level = self.light_normal.max(R::of(polynomial::LOWEST_LIGHT));
-        let more = self.depth - self.above.max(R::of(LEAST_ABOVE)) * R::of(MOST_SLANT) / level;
+        let lowest = R::of(polynomial::LOWEST_LIGHT);
+        let level = (self.light_normal - lowest).max(lowest - self.light_normal) + lowest;
+        let known = (self.above.max(R::of(LEAST_ABOVE)) * R::of(MOST_SLANT) / level).min(R::of(MOST_KNOWN));
+        let more = self.depth - known;
         (-(more.max(R::of(0.0)) * R::of(FADING))).exp()
     }
 }
 
 /// Depth per hair area at a right angle to the light from which on scattered light fades.
 pub const MOST_SLANT: f64 = 1.25;
+/// Depth that is more than that of any slab, wherever in it.
+pub const MOST_KNOWN: f64 = 15.0;
 /// Hair area of which a hair always has so much around it.
 pub const LEAST_ABOVE: f64 = 0.1;
 /// Share of further depth that scattered light is dimmed by.
