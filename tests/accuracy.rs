@@ -223,7 +223,7 @@ fn stack_coverage(tile: &furrier::data::coat::Tile, theta_deg: f32, worn: Mat3, 
         let direction = Vec3::new(sin * azimuth.cos(), sin * azimuth.sin(), -cos);
         let seen = Incidence::new(direction, worn, pixel);
         let uv = Vec2::new((i % 32) as f32 + 0.5, (i / 32) as f32 + 0.5) / 32.0;
-        let depth = density * stack.gain(&seen) * stack.optical_depth(uv, &seen);
+        let depth = density * stack.optical_depth(uv, &seen);
         sum += 1.0 - (-depth).exp();
     }
     sum / 1024.0

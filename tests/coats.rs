@@ -3,6 +3,7 @@
 
 use furrier::data::coat::{FinEdge, FinTexture, Sampled, ShellStack, Tile};
 use furrier::data::image::{Image8, srgb_from_linear, unorm8};
+use furrier::data::shell::code_above;
 use furrier::math::hash::Stream;
 use furrier::math::{Vec2, Vec3, Vec4};
 use furrier::runtime::{CoatMesh, DrawList, SkinMesh};
@@ -139,7 +140,7 @@ fn shells(mut voxels: Vec<Vec<Voxel>>, size: u32, layers: u32, slab_m: f32, texe
                 above[i] += 0.5 * extinction * slab_m;
                 let bytes = colour.to_array().map(|c| unorm8(srgb_from_linear(c)));
                 images.0.pixels[4 * i..4 * i + 3].copy_from_slice(&bytes);
-                images.0.pixels[4 * i + 3] = unorm8((-above[i]).exp());
+                images.0.pixels[4 * i + 3] = code_above(above[i]);
                 above[i] += 0.5 * extinction * slab_m;
                 images.1.pixels[4 * i] = unorm8(extinction / scale);
                 let weighted = voxel.weighted_tangent / (volume * scale);
@@ -150,7 +151,7 @@ fn shells(mut voxels: Vec<Vec<Voxel>>, size: u32, layers: u32, slab_m: f32, texe
             mips.1.insert(0, images.1);
             mips.2.insert(0, images.2);
         }
-        stack.gains.push([1.0; 9]);
+        stack.gains.push(vec![[1.0; 9]; layers as usize]);
         stack.albedo.push(mips.0);
         stack.medium.push(mips.1);
         stack.ends.push(mips.2);

@@ -53,7 +53,13 @@ pub fn tile(seed: u64) -> Tile {
         shells: ShellStack {
             layers: 5,
             size: 8,
-            gains: (0..4).map(|mip| std::array::from_fn(|i| 1.0 + 0.01 * (mip * 9 + i) as f32)).collect(),
+            gains: (0..4)
+                .map(|mip| {
+                    (0..5)
+                        .map(move |layer| std::array::from_fn(move |i| 1.0 + 0.01 * (mip * 45 + layer * 9 + i) as f32))
+                })
+                .map(Iterator::collect)
+                .collect(),
             slopes: (0..5).map(|i| Vec2::new(0.1 * i as f32, -0.05 * i as f32)).collect(),
             extinction_scales_per_m: vec![250.0; 4],
             albedo,

@@ -1,12 +1,11 @@
 //! All parts of an asset are one skin: cuts, order, seams and hard edges in a file change no hair, and hair leaves every face.
 
 use crate::common::shared;
-use furrier::asset::coat::coat_of;
 use furrier::asset::{self, Asset, Document, Fallback};
 use furrier::bake::picture::{Grown, Only, PictureRequest};
 use furrier::bake::units::Units;
 use furrier::bake::{Method, Request, bake};
-use furrier::data::coat::{Coat, CoatPrimitive};
+use furrier::data::coat::Coat;
 use furrier::math::Vec3;
 use furrier::preset::Preset;
 use serde_json::json;
@@ -370,29 +369,4 @@ fn every_node_of_a_mesh_shows_its_fur() {
         assert_eq!(sides[0], sides[1], "{name}: as many hairs on both");
         assert!(sides[0] > 1000, "{name}");
     }
-}
-
-/// What a coat primitive is in the test of files of older versions.
-fn old(coat: &Coat) -> Coat {
-    let plain =
-        |p: &CoatPrimitive| CoatPrimitive { normal: vec![], colour: None, painted: None, longest: vec![], ..p.clone() };
-    Coat { primitives: coat.primitives.iter().map(plain).collect(), ..coat.clone() }
-}
-
-#[test]
-fn files_of_older_versions_are_read() {
-    let folder = tempfile::tempdir().unwrap();
-    let input = write(&asset::load("sample:sphere").unwrap().document, folder.path(), "in.glb");
-    let (_, coat) = baked(&input, &folder.path().join("out.glb"), &thin(&[]), Method::Lapped);
-    let asset = asset::load(&input.to_string_lossy()).unwrap();
-    let old = old(&coat);
-    let mut document = furrier::asset::coat::with_coat(&asset, &old, Fallback::None).unwrap();
-    for version in [1, 2, 3] {
-        document.json["extensions"]["FURRIER_mesh_fur"]["version"] = json!(version);
-        let read = coat_of(&Asset::new(document.clone(), vec![]).unwrap()).unwrap();
-        assert!(read == old, "version {version}");
-    }
-    document.json["extensions"]["FURRIER_mesh_fur"]["version"] = json!(4);
-    let error = coat_of(&Asset::new(document, vec![]).unwrap()).unwrap_err().to_string();
-    assert!(error.contains("1 to 3"), "{error}");
 }

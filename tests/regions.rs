@@ -250,7 +250,7 @@ fn colour_error(stacks: &[Stack<'_>], layers: usize, theta_deg: f32, w: f32, ove
     let seen = Incidence::new(Vec3::new(sin, 0.0, -cos), furrier::math::Mat3::IDENTITY, 1.0 / 64.0);
     let depth = |tile: usize, layer: usize, uv| {
         let stack: &Stack<'_> = &stacks[tile];
-        stack.gain(&seen) * slab_optical_depth(&stack.fetch(layer, uv, &seen), &seen, stack.slab_m())
+        stack.gain(layer, &seen) * slab_optical_depth(&stack.fetch(layer, uv, &seen), &seen, stack.slab_m())
     };
     let errors: Vec<f32> = (0..1024)
         .map(|i| {

@@ -125,7 +125,9 @@ fn light_adds_up_and_darkness_is_dark() {
     };
     let above = Directional { to_light: Vec3::Y, irradiance: Vec3::ONE };
     let left = Directional { to_light: Vec3::NEG_X, irradiance: Vec3::splat(2.0) };
-    let (a, b, c) = (sum(&[above], 0.0), sum(&[left], 0.0), sum(&[], 0.3));
+    // The first light is the key; further ones fill, and are shadowed otherwise.
+    let dark = Directional { irradiance: Vec3::ZERO, ..above };
+    let (a, b, c) = (sum(&[above], 0.0), sum(&[dark, left], 0.0), sum(&[], 0.3));
     assert_eq!(sum(&[], 0.0), 0.0);
     let all = sum(&[above, left], 0.3);
     assert!((all / (a + b + c) - 1.0).abs() < 5e-3, "{all} for {a} + {b} + {c}");

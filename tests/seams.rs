@@ -34,7 +34,7 @@ fn seams_of_real_coats_show_no_more_than_chance() {
             println!("{} on {file}, seed {seed}: {seams:?}", preset.name);
             assert!(seams.difference <= 1.1 && seams.variance >= 0.9, "{file}, seed {seed}: {seams:?}");
             // Planted: hair that stands along the texture, so otherwise on each side of a seam.
-            if file == "bunny_closed_6k6.glb" {
+            if preset.name == "fox" && file == "bunny_5k.glb" {
                 let seams = measure_coat(&mesh, &offset, &vec![Vec3::ZERO; comb.len()], &patches, &tile);
                 assert!(seams.difference > 1.1, "hair along the texture passes: {seams:?}");
             }

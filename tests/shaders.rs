@@ -111,8 +111,12 @@ fn structs_lie_as_in_rust() {
         ),
         (&shell, "Tile", in_rust!(TileUniform { edge_m, height_m, size, layers, mips, tinted, medium_unit_per_m })),
         (&shell, "Mip", in_rust!(Mip { gains })),
-        (&shell, "LayerLook", in_rust!(LayerLook { look, crowding })),
-        (&shell, "CoatVertex", in_rust!(CoatVertex { position_m, u, offset_m, v, normal, longest, axis, tint, root })),
+        (&shell, "LayerLook", in_rust!(LayerLook { look, crowding, area, above_top, top_share, scale_slabs })),
+        (
+            &shell,
+            "CoatVertex",
+            in_rust!(CoatVertex { position_m, u, offset_m, v, normal, longest, axis, bend_per_m, tint, root, away_m }),
+        ),
         (&shell, "Paint", in_rust!(PaintUniform { has_colour, has_painted })),
         (&fin, "FinEdge", in_rust!(FinInstance { ends, u, thickness, spacing_m })),
     ] {

@@ -11,7 +11,7 @@ fn coat() -> Coat {
     let shells = ShellStack {
         layers: 5,
         size: 4,
-        gains: vec![[1.0; 9]],
+        gains: vec![vec![[1.0; 9]; 5]],
         slopes: vec![Vec2::ZERO; 5],
         extinction_scales_per_m: vec![1.0],
         albedo: image(4),

@@ -89,7 +89,7 @@ fn on_cpu(tile: &Tile, standing: &Standing) -> Vec<f32> {
     };
     let t = (standing.length / FADE_BELOW).min(1.0);
     let present = standing.density * t * t * (3.0 - 2.0 * t);
-    let depth = |i: u32| present * stack.gain(&seen) * stack.optical_depth(at(i), &seen);
+    let depth = |i: u32| present * stack.optical_depth(at(i), &seen);
     (0..PIXELS * PIXELS).map(|i| -f32::exp_m1(-depth(i))).collect()
 }
 
@@ -153,7 +153,7 @@ fn the_law_is_the_same_on_both() {
 fn the_law_is_the_same_between_mips() {
     let mut tile = tile();
     let mut stream = Stream::new(5);
-    tile.shells.gains.iter_mut().flatten().for_each(|gain| *gain = 0.6 + 0.8 * stream.unit());
+    tile.shells.gains.iter_mut().flatten().flatten().for_each(|gain| *gain = 0.6 + 0.8 * stream.unit());
     let scales = &tile.shells.extinction_scales_per_m;
     assert!(scales[0] > 1.5 * scales[2], "scales that differ little tell little: {scales:?}");
     let standings =
@@ -242,7 +242,7 @@ pub fn planted(fault: Fault) -> (f32, f32) {
     };
     match fault {
         Fault::Scale => faulty.shells.extinction_scales_per_m.fill(sound.shells.extinction_scales_per_m[0]),
-        Fault::Gain => faulty.shells.gains[1..].iter_mut().flatten().for_each(|gain| *gain *= 1.2),
+        Fault::Gain => faulty.shells.gains[1..].iter_mut().flatten().flatten().for_each(|gain| *gain *= 1.2),
         Fault::Lean | Fault::Presence => {}
     }
     let pixels = on_cpu(&faulty, &other).iter().map(|&alpha| [0.0, 0.0, 0.0, alpha]).collect();

@@ -1,12 +1,13 @@
 // Fins: quads on edges near the silhouette, with hair seen from the side (Lengyel et al. 2001 §2.3).
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
-#import furrier::shading::above_horizon
-#import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, worn_of}
+#import furrier::fur_light::{slant_depth, terminator}
+#import furrier::shading::{past_skin, way_up}
+#import furrier::law::{HairPlace, angles_of, cos_of, lit, lit_by_sky, seen_of, worn_of}
 #import furrier::looks::layer_looks
 #import furrier::shadow_map::key_share
-#import furrier::constants::{INVISIBLE, LEAST_CLEAR, LEAST_COSINE}
-#import furrier::coat::{CoatVertex, Paint, Root, root_of, tile, depth_of_opacity, presence, closeness}
+#import furrier::constants::{INVISIBLE, LEAST_COSINE}
+#import furrier::coat::{CoatVertex, Paint, Root, root_of, tile, area_above, presence, thinned, closeness, at_outline, nearness, STRIPS}
 
 // Texels along the edge per texel along the hair that one fetch may average.
 const MAX_STRETCH: f32 = 4.0;
@@ -46,6 +47,16 @@ struct Varyings {
     @location(7) @interpolate(flat) weight: f32,
     @location(8) root: vec4<f32>,
     @location(9) longest: f32,
+    @location(10) bend_per_m: f32,
+    // Cosine between normal and view.
+    @location(11) @interpolate(flat) cos_view: f32,
+}
+
+// A number in [0, 1) by chance (Jarzynski and Olano 2020, "Hash functions for GPU rendering": pcg).
+fn chance(number: u32) -> f32 {
+    let state = number * 747796405u + 2891336453u;
+    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return f32((word >> 22u) ^ word) / 4294967296.0;
 }
 
 @vertex
@@ -78,8 +89,10 @@ fn vertex(@builtin(vertex_index) index: u32) -> Varyings {
     out.tint = own.tint;
     out.root = own.root;
     out.longest = own.longest;
+    out.bend_per_m = own.bend_per_m;
     out.along = normalize(edge + vec3(0.0, 0.0, 1e-20));
     out.across = across / max(size, 1e-20);
+    out.cos_view = dot(normalize(start.normal + end.normal), ray_direction(middle));
     // A slab of hair seen aslant is as much thicker.
     out.weight = closeness(length(rise), fin.spacing_m) * fin.thickness * weight / max(facing, 0.5);
     if weight > 0.0 && size > 0.0 {
@@ -88,6 +101,12 @@ fn vertex(@builtin(vertex_index) index: u32) -> Varyings {
         out.clip = vec4(0.0, 0.0, -1.0, 1.0);
     }
     return out;
+}
+
+// By how much the skin bends away from a direction at this cosine to its normal, by the metre's square: along a limb less and across
+// it more, half of the sum of both.
+fn bend_along(bend_per_m: f32, cosine: f32) -> f32 {
+    return 0.25 * bend_per_m * max(1.0 - cosine * cosine, 0.0);
 }
 
 @fragment
@@ -111,46 +130,74 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let uv_dx = dpdx(in.uv) * vec2(1.0, squeeze);
     let uv_dy = dpdy(in.uv) * vec2(1.0, squeeze);
     let offset_m = in.offset_m * root.share;
+    let near = nearness(max(abs(uv_dx.x), abs(uv_dy.x)));
+    let near_outline = at_outline(in.cos_view, near);
+    if near_outline <= 0.0 {
+        return vec4(0.0);
+    }
     let texels = vec2(length(vec2(uv_dx.x, uv_dy.x)), length(vec2(uv_dx.y, uv_dy.y))) * size;
     let narrowed = vec2(min(1.0, MAX_STRETCH * max(texels.y, 1.0) / max(texels.x, 1e-6)), 1.0);
     let surface = textureSampleGrad(fin_albedo, fin_sampler, uv, 0, uv_dx * narrowed, uv_dy * narrowed);
     let medium = textureSampleGrad(fin_tangent, fin_sampler, uv, 0, uv_dx * narrowed, uv_dy * narrowed);
     if uv.y < 0.0 {
-        discard;
+        return vec4(0.0);
     }
     let present = tint.w * root.density * presence(offset_m);
-    let depth = depth_of_opacity(surface.a) * in.weight * present;
-    let opacity = 1.0 - exp(-depth);
-    if opacity < INVISIBLE {
-        discard;
-    }
-
     let stored = (medium.xyz * 255.0 - 128.0) / 127.0;
     let up = normalize(in.offset_m);
     let tangent = normalize(stored.x * in.along + stored.y * in.across + stored.z * up + up * 1e-6);
-    let world_ray = ray_direction(in.position_m);
+    let to_eye = -ray_direction(in.position_m);
     let normal = normalize(in.normal);
-    // What stands out at the outline is guard hair.
-    let look = 0u;
-    let crowding = layer_looks[tile.layers - 1u].crowding;
-    let worn = worn_of(look, surface.rgb * tint.rgb);
-    let to_eye = -world_ray;
     let hair_normal = dot(tangent, normal);
     let eye_normal = dot(to_eye, normal);
-    let above = -log(max(medium.a, LEAST_CLEAR)) * present;
+    let eye_hair = dot(tangent, to_eye);
+    let hair_m = length(offset_m);
+    let height_m = (1.0 - uv.y) * hair_m;
+    let above = area_above(medium.a) * present * hair_m / tile.height_m;
+    let layer = u32(clamp(ceil((1.0 - uv.y) * f32(tile.layers - 1u)), 1.0, f32(tile.layers - 1u)));
+    let upright_m = max(dot(up, normal), LEAST_COSINE) * hair_m;
+    let scale_m = layer_looks[layer].scale_slabs * upright_m / f32(tile.layers - 1u);
+
+    // Hair that stands out of a bent skin stands the wider apart the higher it is.
+    let spread = max(1.0 + 0.5 * in.bend_per_m * height_m, 0.1);
+    let amount = in.weight * near_outline * present / (spread * spread);
+    // Near by, whole hairs are left out; from afar, a share of each.
+    let left = mix(amount, step(chance(u32(i32(floor(in.uv.x * STRIPS)))), amount), near);
+    let opacity = thinned(surface.a, select(left, amount, amount >= 1.0));
+    if opacity < INVISIBLE {
+        return vec4(0.0);
+    }
+
+    // What stands out at the outline is guard hair.
+    let which = 0u;
+    let crowding = layer_looks[tile.layers - 1u].crowding * present;
+    let worn = worn_of(which, surface.rgb * tint.rgb);
+    let seen = seen_of(which, above, eye_hair, hair_normal, eye_normal);
     var radiance = vec3(0.0);
     if any(view.ambient != vec3(0.0)) {
-        radiance = view.ambient * lit_by_sky(look, above, dot(tangent, to_eye), hair_normal, eye_normal, worn, crowding);
+        radiance = view.ambient * lit_by_sky(which, above, eye_hair, hair_normal, eye_normal, worn, crowding);
     }
     let root_m = in.position_m - (1.0 - in.uv.y) * in.offset_m;
     for (var i = 0u; i < view.light_count; i++) {
         let light = light_at(view.lights[i], in.position_m);
-        let cos_light = dot(normal, light.to_light);
+        let light_normal = dot(normal, light.to_light);
         let angles = angles_of(tangent, light.to_light, to_eye);
-        let lateral = sqrt(max(0.0, 1.0 - angles.sin_in * angles.sin_in)) / max(abs(cos_light), LEAST_COSINE);
-        let here = HairPlace(above, above * lateral, dot(light.to_light, to_eye), hair_normal, eye_normal, cos_light);
-        let reaching = light.irradiance * key_share(i, root_m, in.position_m, normal, light.to_light);
-        radiance += above_horizon(cos_light) * reaching * lit(look, angles, here, worn, crowding);
+        var open = 1.0;
+        var depth = 0.0;
+        if i == 0u {
+            let bend_per_m = bend_along(in.bend_per_m, light_normal);
+            depth = above * cos_of(angles.sin_in) * way_up(light_normal, bend_per_m, scale_m);
+            open = key_share(i, root_m, in.position_m, normal, light.to_light);
+            open *= past_skin(light_normal, bend_per_m, (1.0 - uv.y) * upright_m);
+        } else {
+            open = terminator(light.to_light, normal);
+            depth = slant_depth(above, light.to_light, normal, tangent);
+        }
+        if open <= 0.0 {
+            continue;
+        }
+        let here = HairPlace(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, light_normal);
+        radiance += open * light.irradiance * lit(seen, angles, here, worn, crowding);
     }
     return vec4(radiance * opacity, opacity);
 }

@@ -8,6 +8,14 @@ struct LayerLook {
     look: u32,
     // Hair area per volume times diameter.
     crowding: f32,
+    // Hair area of the layer per skin area, in the mean.
+    area: f32,
+    // Hair area above the layer's top, in the mean.
+    above_top: f32,
+    // Hair area above the layer's top over that above its middle.
+    top_share: f32,
+    // Height over which the hair area above falls to 1/e, slabs.
+    scale_slabs: f32,
 }
 
 @group(1) @binding(7) var<storage, read> looks: array<Look>;

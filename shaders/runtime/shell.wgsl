@@ -2,13 +2,14 @@
 // where the ray passes its middle.
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
-#import furrier::shading::above_horizon
-#import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, worn_of}
+#import furrier::fur_light::{slant_depth, terminator}
+#import furrier::shading::{past_skin, way_up}
+#import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, seen_of, worn_of}
 #import furrier::looks::layer_looks
 #import furrier::shadow_map::key_share
-#import furrier::constants::{INVISIBLE, LEAST_CLEAR, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
+#import furrier::constants::{INVISIBLE, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
 #import furrier::coat::{CoatVertex, Paint, Root, root_of, Filled, filled_slab, Frame, Medium, Footprint, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
-    lateral, shadow_slant, depth_of_opacity, presence, path_through_slab, footprint, fetch, run_through_slab, gain, medium_of, fin_share, closeness}
+    lateral, across, area_above, seen_at, depth_of_opacity, presence, path_through_slab, footprint, fetch, run_through_slab, gain, medium_of, fin_share, nearness, closeness}
 
 // Which side of the shells this pass draws: the far one first, outer to inner, then the near one, inner to outer.
 override NEAR_SIDE: bool = true;
@@ -24,6 +25,10 @@ const HARD: f32 = 0.707;
 const SOFT: f32 = 0.906;
 // Deeper is never seen through.
 const OPAQUE: f32 = 4.0;
+// Optical depth, by the mean hair area and without gains, behind which hair is not looked at.
+const UNSEEN: f32 = 10.0;
+// Cosine between normal and view below which triangles are not left out.
+const SLANTING: f32 = 0.4;
 // Taps of the far side, which lies behind the near one and can do with fewer.
 const FAR_TAPS: f32 = 4.0;
 
@@ -56,6 +61,35 @@ struct Varyings {
     @location(13) longest: f32,
     // Normal of the facet, outwards, and how far it gives way to the smooth one.
     @location(14) @interpolate(flat) facet: vec4<f32>,
+}
+
+// Whether hair before a triangle of a layer, or the skin, surely hides it. The coat goes on around it as far as the eye's ray runs
+// through it, or what is seen of it from the side at a border would be missing.
+fn out_of_sight(a: CoatVertex, b: CoatVertex, c: CoatVertex, layer: u32, facet: vec3<f32>) -> bool {
+    let offset_m = (a.offset_m + b.offset_m + c.offset_m) / 3.0;
+    let hair_m = length(offset_m);
+    let to_eye = -ray_direction(a.position_m + offset_m);
+    let rise = dot(facet, to_eye);
+    let upright = dot(facet, offset_m);
+    let away_m = min(min(a.away_m, b.away_m), c.away_m);
+    // Beside hard edges and borders what is seen on a slant comes in from the side.
+    if hair_m <= 0.0 || abs(rise) < SLANTING || upright <= 0.05 * hair_m || away_m < 2.0 * hair_m / abs(rise) {
+        return false;
+    }
+    let height_m = upright * f32(layer) / f32(tile.layers - 1u);
+    // The stronger of both curvatures is no more than their sum, where neither is hollow.
+    let bend_per_m = 0.5 * max(max(a.bend_per_m, b.bend_per_m), max(c.bend_per_m, 0.0)) * (1.0 - rise * rise);
+    if past_skin(rise, bend_per_m, height_m) <= 0.0 {
+        return true;
+    }
+    if tile.tinted < 0.5 || paint.has_painted > 0u {
+        return false;
+    }
+    let look = layer_looks[layer];
+    let along = dot(offset_m, to_eye) / hair_m;
+    let area = look.above_top * min(min(a.tint.w, b.tint.w), c.tint.w) * hair_m / tile.height_m;
+    let scale_m = look.scale_slabs * upright / f32(tile.layers - 1u);
+    return area * sqrt(max(1.0 - along * along, 0.0)) * way_up(rise, bend_per_m, scale_m) > UNSEEN;
 }
 
 @vertex
@@ -111,12 +145,50 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
         // Hair that leans behind its skin counts as missing.
         seen_from_outside = dot(a.normal + b.normal + c.normal, ray_direction(at_a)) < 0.0;
     }
-    if seen_from_outside == NEAR_SIDE && scale != 0.0 {
+    let drawn = seen_from_outside == NEAR_SIDE && scale != 0.0;
+    if drawn && (DEPTHS > 0u || !out_of_sight(a, b, c, layer, facet)) {
         out.clip = view.clip_from_world * vec4(out.position_m, 1.0);
     } else {
         out.clip = vec4(0.0, 0.0, -1.0, 1.0);
     }
     return out;
+}
+
+// How the skin lies at a pixel at this height, and how it bends: per metre of the texture.
+struct Skin {
+    // Metres of the texture of a direction in the world: two rows.
+    x_row: vec3<f32>,
+    y_row: vec3<f32>,
+    x_axis: vec3<f32>,
+    y_axis: vec3<f32>,
+    x_turn: vec3<f32>,
+    y_turn: vec3<f32>,
+    // Half of how far bends count over how much of the offset is upright.
+    half_share: f32,
+}
+
+// By how much, per square of a metre along a direction with these metres of the texture, the skin bends away from it, in
+// metres of the tile.
+fn bend_along(skin: Skin, texture: vec2<f32>) -> f32 {
+    let sideways = skin.x_axis * texture.x + skin.y_axis * texture.y;
+    let turn = skin.x_turn * texture.x + skin.y_turn * texture.y;
+    return skin.half_share * dot(turn, sideways);
+}
+
+// The way of light, or of the eye's ray, through the hair above a place.
+struct Way {
+    // Optical depth over hair area straight above.
+    longer: f32,
+    // Metres of the tile that it rises, and that the skin bends away from it, by the metre and its square.
+    rise: f32,
+    bend_per_m: f32,
+}
+
+fn way_of(place: Place, medium: Medium, to: vec3<f32>, scale_m: f32) -> Way {
+    let rise = dot(place.rise, to);
+    let bend_per_m = bend_along(place.skin, vec2(dot(place.skin.x_row, to), dot(place.skin.y_row, to)));
+    let side = across(place.at, to, medium) / max(medium.extinction, LEAST_EXTINCTION);
+    return Way(side * way_up(rise, bend_per_m, scale_m), rise, bend_per_m);
 }
 
 // How a coat lies at a pixel, and how it is seen.
@@ -129,6 +201,9 @@ struct Place {
     // The same ray as the texture is fetched along it.
     sweep: Ray,
     bend_per_m: f32,
+    skin: Skin,
+    // The third row of the hair's frame: metres of the tile that a direction rises.
+    rise: vec3<f32>,
     uv: vec2<f32>,
     uv_dx: vec2<f32>,
     uv_dy: vec2<f32>,
@@ -160,10 +235,12 @@ fn place_of(in: Varyings, offset_m: vec3<f32>, uv_dx: vec2<f32>, uv_dy: vec2<f32
     let sweep = Ray(vec3((texture.tile_from_world * world_ray).xy, ray.direction.z), ray.cosine, ray.fall);
 
     // The surface bends away from the ray by half its normal curvature along it, measured in metres of the tile.
-    let sideways = x_axis * sweep.direction.x + y_axis * sweep.direction.y;
-    let turn = in.x_turn * sweep.direction.x + in.y_turn * sweep.direction.y;
-    let bend_per_m = 0.5 * in.facet.w * dot(turn, sideways) / max(dot(normal, at.world_from_tile[2]), LEAST_RISE);
-    return Place(normal, world_ray, at, ray, sweep, bend_per_m, in.uv, uv_dx, uv_dy);
+    let rows = transpose(texture.tile_from_world);
+    let half_share = 0.5 * in.facet.w / max(dot(normal, at.world_from_tile[2]), LEAST_RISE);
+    let skin = Skin(rows[0], rows[1], x_axis, y_axis, in.x_turn, in.y_turn, half_share);
+    let bend_per_m = bend_along(skin, sweep.direction.xy);
+    let rise = transpose(at.tile_from_world)[2];
+    return Place(normal, world_ray, at, ray, sweep, bend_per_m, skin, rise, in.uv, uv_dx, uv_dy);
 }
 
 fn met(place: Place, slab: Filled) -> Met {
@@ -186,7 +263,16 @@ fn met(place: Place, slab: Filled) -> Met {
     // τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], model e of docs/steps/shells.md; g by the pixel's own mip.
     let through = path_m * lateral(place.at, place.world_ray, medium);
     let of_ends = slab.slabs * depth_of_opacity(ends) * min(1.0, path_m * place.ray.fall / max(slab.slab_m, 1e-20));
-    return Met(gain(gain_level, place.ray.cosine) * (through + of_ends), medium, uv, spot.round_level);
+    return Met(gain(gain_level, u32(slab.layer), place.ray.cosine) * (through + of_ends), medium, uv, spot.round_level);
+}
+
+// A fragment that shows nothing. Where depth is written it is thrown away; where none is, a program that throws none away lets the
+// skin's depth be tested before it runs.
+fn nothing() -> vec4<f32> {
+    if NEAR_SIDE {
+        discard;
+    }
+    return vec4(0.0);
 }
 
 @fragment
@@ -209,7 +295,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         slab = filled_slab(in.layer, root.share);
     }
     if slab.slabs <= 0.0 && DEPTHS != 2u {
-        discard;
+        return nothing();
     }
     let offset_m = in.offset_m * root.share;
     let place = place_of(in, offset_m, uv_dx, uv_dy);
@@ -226,16 +312,20 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         return vec4(0.0, min(expected, OPAQUE), 1.0, 0.0);
     }
 
+    let look = layer_looks[u32(slab.layer)];
+    let scale_m = look.scale_slabs * slab.slab_m;
+    let to_eye = -place.world_ray;
     let found = met(place, slab);
     let medium = found.medium;
-    let kept = select(1.0, 1.0 - in.spread.y * fin_share(dot(place.normal, place.world_ray)), WITH_FINS);
+    let near = nearness(max(length(uv_dx), length(uv_dy)));
+    let kept = select(1.0, 1.0 - in.spread.y * fin_share(dot(place.normal, place.world_ray), near), WITH_FINS);
     let depth = found.depth * present * kept;
     if DEPTHS == 1u {
         return vec4(min(depth, OPAQUE), 0.0, 0.0, 0.0);
     }
     let opacity = 1.0 - exp(-depth);
     if opacity < INVISIBLE {
-        discard;
+        return nothing();
     }
     let surface = textureSampleLevel(albedo_texture, hair_sampler, found.uv, slab.layer, found.round_level);
     var tint = vec3(1.0);
@@ -247,30 +337,48 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     }
     let at = place.at;
     let normal = place.normal;
-    let world_ray = place.world_ray;
 
     // m, where there is enough hair for eight bits to tell.
     let tangent = normalize(at.world_from_tile * (medium.tangent + vec3(0.0, 0.0, LEAST_EXTINCTION)));
-    let look = layer_looks[u32(slab.layer)];
     let worn = worn_of(look.look, surface.rgb * tint);
-    let to_eye = -world_ray;
     let hair_normal = dot(tangent, normal);
     let eye_normal = dot(to_eye, normal);
-    // At 45° to upright hair depth is hair area above.
-    let above = -log(max(surface.a, LEAST_CLEAR)) * present;
+    // Less lies above what is seen of a slab than above its middle.
+    var from_middle = 1.0;
+    var within = 0.5;
+    if NEAR_SIDE {
+        within = seen_at(look.area * present * way_of(place, medium, to_eye, scale_m).longer);
+        from_middle = mix(look.top_share, 1.0, 2.0 * within);
+    }
+    let area = area_above(surface.a) * present * from_middle;
+    let above = area * length(at.world_from_tile[2]);
+    let crowding = look.crowding * present;
+    let seen = seen_of(look.look, above, dot(tangent, to_eye), hair_normal, eye_normal);
     var radiance = vec3(0.0);
     if any(view.ambient != vec3(0.0)) {
-        radiance = view.ambient * lit_by_sky(look.look, above, dot(tangent, to_eye), hair_normal, eye_normal, worn, look.crowding);
+        radiance = view.ambient * lit_by_sky(look.look, above, dot(tangent, to_eye), hair_normal, eye_normal, worn, crowding);
     }
     let root_m = in.position_m - in.offset_m * (f32(in.layer) / f32(tile.layers - 1u));
     for (var i = 0u; i < view.light_count; i++) {
         let light = light_at(view.lights[i], in.position_m);
         let light_normal = dot(normal, light.to_light);
-        let depth = above * shadow_slant(at, light.to_light, medium);
         let angles = angles_of(tangent, light.to_light, to_eye);
+        var open = 1.0;
+        var depth = 0.0;
+        if i == 0u {
+            let way = way_of(place, medium, light.to_light, scale_m);
+            let height_m = (f32(slab.layer) - within) * slab.slab_m;
+            depth = area * way.longer;
+            open = key_share(i, root_m, in.position_m, normal, light.to_light) * past_skin(way.rise, way.bend_per_m, height_m);
+        } else {
+            open = terminator(light.to_light, normal);
+            depth = slant_depth(above, light.to_light, normal, tangent);
+        }
+        if open <= 0.0 {
+            continue;
+        }
         let here = HairPlace(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, light_normal);
-        let reaching = light.irradiance * key_share(i, root_m, in.position_m, normal, light.to_light);
-        radiance += above_horizon(light_normal) * reaching * lit(look.look, angles, here, worn, look.crowding);
+        radiance += open * light.irradiance * lit(seen, angles, here, worn, crowding);
     }
     return vec4(radiance * opacity, opacity);
 }

@@ -3,8 +3,8 @@
 #import furrier::light::light_at
 #import furrier::shading::skin_radiance
 #import furrier::shadow_map::key_share
-#import furrier::constants::{FADE_BELOW, LEAST_CLEAR, LEAST_COSINE}
-#import furrier::coat::{hair_sampler, albedo_texture}
+#import furrier::constants::{FADE_BELOW, LEAST_COSINE}
+#import furrier::coat::{hair_sampler, albedo_texture, area_above}
 
 @group(2) @binding(0) var base_sampler: sampler;
 @group(2) @binding(1) var base_texture: texture_2d_array<f32>;
@@ -52,7 +52,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let world_ray = ray_direction(in.position_m);
     let turned = normalize(in.normal);
     let normal = select(turned, -turned, dot(turned, world_ray) > 0.0);
-    let outside_depth = min(-log(max(cover.a, LEAST_CLEAR)) * in.coat_density * painted.r * furred, DEEPEST_SKIN);
+    let outside_depth = min(area_above(cover.a) * in.coat_density * painted.r * furred, DEEPEST_SKIN);
     let gloss = 1.0 - furred;
 
     var radiance = albedo * view.ambient * exp(-outside_depth);

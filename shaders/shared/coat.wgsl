@@ -2,7 +2,7 @@
 #define_import_path furrier::coat
 
 #import furrier::constants::{APART, FADE_BELOW, GAIN_ANGLES_DEG, LEAST_AXIS, LEAST_BULK, LEAST_CLEAR, LEAST_COSINE, LEAST_DIRECTION,
-    LEAST_EXTINCTION, LEAST_VOLUME, PI}
+    LEAST_EXTINCTION, LEAST_VOLUME, MOST_ABOVE, PI}
 
 struct Tile {
     // Length that one unit of UV stands for, m.
@@ -20,6 +20,7 @@ struct Tile {
     medium_unit_per_m: f32,
 }
 
+// Of one layer.
 struct Mip {
     // At GAIN_ANGLES_DEG.
     gains: array<f32, 9>,
@@ -36,10 +37,14 @@ struct CoatVertex {
     longest: f32,
     // The tile's x axis on the skin, of any length; 0 where it is the texture's own.
     axis: vec3<f32>,
+    // Sum of the skin's principal curvatures, 1/m.
+    bend_per_m: f32,
     // Colour factor and density factor.
     tint: vec4<f32>,
     // Where textures of the root are read: of colour in xy, of what is painted in zw.
     root: vec4<f32>,
+    // How far it is from where the coat ends, m.
+    away_m: f32,
 }
 
 // Which textures of the root there are, 0 or 1 each.
@@ -48,9 +53,18 @@ struct Paint {
     has_painted: u32,
 }
 
+// Cosines between normal and view up to which fins stand for their share of hair, from afar and near by; from twice as much on they stand
+// for none.
+const OUTLINE: vec2<f32> = vec2(0.16, 0.5);
+// Strips of hair along a tile's edge that are told apart near by.
+const STRIPS: f32 = 128.0;
+// Pixels along a tile's edge from which on they are.
+const TOLD_APART: f32 = 24.0;
+
 @group(1) @binding(0) var<uniform> tile: Tile;
 // Per layer: mean slope of the hair, (dx, dy)/dz in tile axes.
 @group(1) @binding(1) var<storage, read> slopes: array<vec2<f32>>;
+// Of every layer, mip after mip.
 @group(1) @binding(2) var<storage, read> mips: array<Mip>;
 @group(1) @binding(3) var hair_sampler: sampler;
 @group(1) @binding(4) var albedo_texture: texture_2d_array<f32>;
@@ -132,10 +146,24 @@ fn across(at: Frame, world: vec3<f32>, medium: Medium) -> f32 {
     return sqrt(max(0.0, stretched * stretched - along * along)) / at.volume;
 }
 
-// How much more hair a light from `to_light` meets than one at 45 degrees meets of upright hair.
-fn shadow_slant(at: Frame, to_light: vec3<f32>, medium: Medium) -> f32 {
-    let light = ray_in_tile(at, to_light);
-    return across(at, to_light, medium) / (abs(light.direction.z) * max(medium.extinction, LEAST_EXTINCTION));
+// Hair area above per skin area, of alpha.
+fn area_above(alpha: f32) -> f32 {
+    return MOST_ABOVE * (1.0 - alpha) * (1.0 - alpha);
+}
+
+// How deep in a layer lies what is seen of it from outside, in the mean, as a share of its thickness; `depth` is what the eye's ray
+// meets of it.
+fn seen_at(depth: f32) -> f32 {
+    if depth < 0.1 {
+        return 0.5 - depth / 12.0;
+    }
+    return 1.0 / depth - 1.0 / (exp(min(depth, 80.0)) - 1.0);
+}
+
+// Opacity of a slab with `amount` times as much hair as one of this opacity. Hair is opaque where it is: less hair covers less of
+// what it covers, and does not become more of a veil.
+fn thinned(opacity: f32, amount: f32) -> f32 {
+    return select(1.0 - exp(-amount * depth_of_opacity(opacity)), amount * opacity, amount < 1.0);
 }
 
 // Optical depth of an opacity: κ of the filtered 1 - e^-κ, and that of a fin.
@@ -237,34 +265,47 @@ fn run_through_slab(ray: Ray, path_m: f32, slab_m: f32, slope: vec2<f32>) -> vec
     return (sign(ray.direction.z) * path_m * ray.direction.xy - slab_m * slope) / tile.edge_m;
 }
 
-fn gain_of_mip(mip: u32, degrees: f32) -> f32 {
+fn gain_of_mip(mip: u32, layer: u32, degrees: f32) -> f32 {
+    let row = mip * tile.layers + layer;
     var angles = GAIN_ANGLES_DEG;
     for (var i = 1u; i < 9u; i++) {
         if degrees <= angles[i] {
-            return mix(mips[mip].gains[i - 1u], mips[mip].gains[i], (degrees - angles[i - 1u]) / (angles[i] - angles[i - 1u]));
+            return mix(mips[row].gains[i - 1u], mips[row].gains[i], (degrees - angles[i - 1u]) / (angles[i] - angles[i - 1u]));
         }
     }
-    return mips[mip].gains[8];
+    return mips[row].gains[8];
 }
 
-// g(θ) of a level between two mips.
-fn gain(level: f32, cosine: f32) -> f32 {
+// g(θ) of a layer at a level between two mips.
+fn gain(level: f32, layer: u32, cosine: f32) -> f32 {
     let degrees = acos(clamp(cosine, 0.0, 1.0)) * (180.0 / PI);
     let mip = u32(level);
     let next = min(mip + 1u, tile.mips - 1u);
-    return mix(gain_of_mip(mip, degrees), gain_of_mip(next, degrees), fract(level));
+    return mix(gain_of_mip(mip, layer, degrees), gain_of_mip(next, layer, degrees), fract(level));
 }
 
 // Share of the coat that fins carry where the skin's normal is at this cosine to the view: the mean of Lengyel's weight
 // max(0, 2|p| - 1) over edges of every direction, p = sin α cos ψ. Shells keep the rest, so that both together hold the
 // coat once (docs/steps/runtime.md, "Silhouettes").
-fn fin_share(cos_view: f32) -> f32 {
+fn fin_share(cos_view: f32, near: f32) -> f32 {
     let sin_view = sqrt(max(0.0, 1.0 - cos_view * cos_view));
     if sin_view <= 0.5 {
         return 0.0;
     }
     let limit = acos(0.5 / sin_view);
-    return (2.0 / PI) * (2.0 * sin_view * sin(limit) - limit);
+    return (2.0 / PI) * (2.0 * sin_view * sin(limit) - limit) * at_outline(cos_view, near);
+}
+
+// How far fins stand for hair where the skin's normal is at this cosine to the view. They lie behind all near shells and in no order, so
+// from afar shells are all of the coat but at the outline; near by shells are smooth, and fins show single hairs.
+fn at_outline(cos_view: f32, near: f32) -> f32 {
+    let edge = mix(OUTLINE.x, OUTLINE.y, near);
+    return 1.0 - smoothstep(edge, 2.0 * edge, abs(cos_view));
+}
+
+// How near a pixel is, from 0 to 1, given what of the tile's edge it spans: whether single hairs can be told apart in it.
+fn nearness(span: f32) -> f32 {
+    return 1.0 - clamp(span * TOLD_APART, 0.0, 1.0);
 }
 
 // How far fins stand for the hair around them, which is as far as they stand closer than it is long: `spacing_m` is the skin's

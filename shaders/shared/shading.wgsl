@@ -3,9 +3,29 @@
 
 #import furrier::constants::PI
 
-// A light near the skin's horizon is hidden by the body, gradually, because hair stands out above it.
-fn above_horizon(cos_light: f32) -> f32 {
-    return smoothstep(-0.35, 0.1, cos_light);
+// Least rise of light over flat skin.
+const LEAST_STEEP: f32 = 0.02;
+
+// How far light comes through hair that thins out with height, over `scale_m`, the height at which it is 1/e: what of it lies along
+// the way over what lies straight above. `rise` is how much higher a metre along the light is; the skin bends away from it by
+// `bend_per_m`. For a flat coat it is 1/rise; else Chapman's function, simply.
+fn way_up(rise: f32, bend_per_m: f32, scale_m: f32) -> f32 {
+    let bent = max(bend_per_m, 0.0) * scale_m;
+    let steep = abs(rise);
+    let out = 2.0 / max(steep + sqrt(steep * steep + 16.0 / PI * bent), 2.0 * LEAST_STEEP);
+    if rise >= 0.0 {
+        return out;
+    }
+    // Down to where it is level, and up again.
+    let level = sqrt(PI / max(bent, 1e-6));
+    return level * exp(min(steep * steep / max(4.0 * bent, 1e-6), 20.0)) - out;
+}
+
+// Share of a light that comes by the skin to hair at `height_m` over it: below the horizon it is hidden by the body, unless the
+// skin bends away.
+fn past_skin(rise: f32, bend_per_m: f32, height_m: f32) -> f32 {
+    let sunk_m = rise * rise / max(4.0 * bend_per_m, 1e-6);
+    return select(1.0 - smoothstep(0.3, 1.0, sunk_m / max(height_m, 1e-9)), 1.0, rise >= 0.0);
 }
 
 // Radiance of bare or furred skin: Lambert, and for what shines (eyes, noses) a Blinn-Phong lobe with Schlick's

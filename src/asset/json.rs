@@ -35,9 +35,13 @@ impl<'a> At<'a> {
 
     /// The entries of the array `key`; none where the member is absent.
     pub fn list(&self, key: &str) -> Result<Vec<At<'a>>> {
-        let Some(list) = self.get(key) else { return Ok(Vec::new()) };
-        let entries = list.value.as_array().ok_or_else(|| list.fault("an array"))?;
-        Ok(entries.iter().enumerate().map(|(i, value)| At { value, path: format!("{}[{i}]", list.path) }).collect())
+        self.get(key).map_or(Ok(Vec::new()), |list| list.entries())
+    }
+
+    /// The entries of this array.
+    pub fn entries(&self) -> Result<Vec<At<'a>>> {
+        let entries = self.value.as_array().ok_or_else(|| self.fault("an array"))?;
+        Ok(entries.iter().enumerate().map(|(i, value)| At { value, path: format!("{}[{i}]", self.path) }).collect())
     }
 
     /// Entry `index` of the array `key`.

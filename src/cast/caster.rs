@@ -117,6 +117,47 @@ impl<'a> Caster<'a> {
         through
     }
 
+    /// Mean transmittance over the rays of a film up to each of the rising distances `ends_m`.
+    pub fn seen_through(&self, rays: &Rays<'_>, ends_m: &[f32]) -> Vec<f64> {
+        let [width, height] = rays.size();
+        let range = DepthRange { near_m: 0.0, far_m: ends_m.last().copied().unwrap_or(0.0) };
+        let row = |met: &mut Met, y: usize| {
+            let mut sums = vec![0.0; ends_m.len()];
+            for i in 0..width * rays.per_pixel() {
+                let (x, sample) = (i / rays.per_pixel(), i % rays.per_pixel());
+                self.add_through(&rays.ray(x, y, sample), range, ends_m, met, &mut sums);
+            }
+            sums
+        };
+        let rows: Vec<Vec<f64>> = (0..height).into_par_iter().map_init(Met::default, row).collect();
+        let rays = (width * height * rays.per_pixel()) as f64;
+        (0..ends_m.len()).map(|end| rows.iter().map(|row| row[end]).sum::<f64>() / rays).collect()
+    }
+
+    fn add_through(&self, ray: &Ray, mut range: DepthRange, ends_m: &[f32], met: &mut Met, sums: &mut [f64]) {
+        self.meet(ray, &mut range, met);
+        let (mut hairs, mut depth, mut last) = (1.0, 0.0, None);
+        let mut crossings = met.crossings.iter().peekable();
+        let mut steps = met.steps.iter().peekable();
+        for (&end_m, sum) in ends_m.iter().zip(sums) {
+            while let Some(crossing) = crossings.next_if(|crossing| crossing.depth_m <= end_m) {
+                if !self.same_hair(&mut last, crossing) {
+                    hairs *= 1.0 - crossing.alpha;
+                }
+            }
+            while let Some(step) = steps.next_if(|step| step.to_m <= end_m) {
+                depth += step.depth;
+            }
+            let begun =
+                steps.peek().filter(|step| step.from_m < end_m).map_or(0.0, |&&(mut step)| step.before(end_m).depth);
+            let through = hairs * libm::expf(-depth - begun);
+            if through < OPAQUE {
+                return;
+            }
+            *sum += f64::from(through);
+        }
+    }
+
     /// Share of each pixel's rays that single hairs are the first to block before each of the rising distances `ends_m`, and
     /// not before the one before it: `[pixel][distance]`. A hair counts in each interval that it is met in, as far as what is before
     /// lets it be seen.
@@ -151,13 +192,14 @@ impl<'a> Caster<'a> {
         rows.concat()
     }
 
-    fn trace(&self, ray: &Ray, mut range: DepthRange, met: &mut Met) -> Seen {
+    /// Finds what a ray meets, in order, as far as it sees.
+    fn meet(&self, ray: &Ray, range: &mut DepthRange, met: &mut Met) {
         let Met { crossings, steps } = met;
         crossings.clear();
         steps.clear();
         if let Some(medium) = self.geometry.medium {
             let mut depth = 0.0;
-            medium.walk(ray, range, |step| {
+            medium.walk(ray, *range, |step| {
                 steps.push(step);
                 depth += step.depth;
                 depth < OPAQUE_DEPTH
@@ -166,8 +208,13 @@ impl<'a> Caster<'a> {
                 range.far_m = steps.last().map_or(range.far_m, |step| step.to_m);
             }
         }
-        self.collect(ray, range, Stop::NearestOpaque, crossings);
+        self.collect(ray, *range, Stop::NearestOpaque, crossings);
         self.sort(crossings);
+    }
+
+    fn trace(&self, ray: &Ray, mut range: DepthRange, met: &mut Met) -> Seen {
+        self.meet(ray, &mut range, met);
+        let Met { crossings, steps } = met;
         let mut seen = Seen::default();
         let mut through = 1.0_f32;
         let mut last = None;

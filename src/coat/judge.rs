@@ -95,10 +95,10 @@ fn constant_coverage(stack: &Stack<'_>, tile: &Tile, uv: Vec2, seen: &Incidence,
         .map(|layer| {
             // Fetched where the view ray meets the layer, as if seen from above.
             let texel = stack.fetch_middle(layer, stack.middle(layer, uv, seen), &above);
-            slab_optical_depth(&texel, &above, stack.slab_m())
+            stack.gain(layer, &above) * slab_optical_depth(&texel, &above, stack.slab_m())
         })
         .sum();
-    -libm::expm1f(-stack.gain(&above) * depth)
+    -libm::expm1f(-depth)
 }
 
 /// Root mean square difference of two stacks of n × n pictures, each averaged over 4 × 4 pixels first.

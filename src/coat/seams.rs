@@ -77,14 +77,13 @@ const HIDDEN: f32 = 1e-3;
 /// Luminance that leaves a tile's stack towards the eye along the view ray through `uv`, under a light of radiosity 1 above:
 /// slabs from the outside in, each by its opacity, then the skin.
 fn brightness(stack: &Stack<'_>, tile: &Tile, uv: Vec2, seen: &Incidence) -> f32 {
-    let gain = stack.gain(seen);
     let (mut through, mut light) = (1.0, 0.0);
     for layer in (1..tile.shells.layers as usize).rev() {
         if through < HIDDEN {
             return light;
         }
         let texel = stack.fetch_nearest(layer, stack.middle(layer, uv, seen), seen);
-        let clear = libm::expf(-gain * slab_optical_depth(&texel, seen, stack.slab_m()));
+        let clear = libm::expf(-stack.gain(layer, seen) * slab_optical_depth(&texel, seen, stack.slab_m()));
         light += through * (1.0 - clear) * texel.brightness;
         through *= clear;
     }

@@ -2,9 +2,10 @@
 
 use super::fins::{FinParameters, texture};
 use super::hair::{TileHair, leaning};
+use super::shells::above::Above;
 use super::shells::deposit::{VoxelLayout, Voxels, mean_slopes};
 use super::shells::encode::{Raw, encode};
-use super::shells::{ShellParameters, ends, gains, shadow, undercoat};
+use super::shells::{ShellParameters, ends, gains, undercoat};
 use crate::data::coat::{Sampled, Tile, TileLooks};
 use crate::math::Vec3;
 
@@ -57,32 +58,31 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
         if let Some(medium) = &hair.undercoat {
             undercoat::add(medium, &slopes, &mut voxels, &mut kappa);
         }
-        let (transmittance, skin_transmittance) = shadow::transmittance(&voxels, &kappa);
+        let above = Above::new(&layout, &voxels.extinction, 0, &[]);
         let shells = encode(&Raw {
             voxels: &voxels,
             ends: &kappa,
-            transmittance: &transmittance,
-            skin_transmittance: &skin_transmittance,
+            above: &above,
             skin: recipe.skin,
             slopes: &slopes,
             skin_share: &[],
         });
         let shares = undercoat_shares(&guard, &slab_means(&voxels.extinction, slabs));
-        (shells, slab_means(&transmittance, slabs), shares)
+        (shells, slab_means(&above.voxels, slabs), shares)
     };
     let truth = || {
         let mapped = hair.mapped(lean);
-        gains::strand_transmittance(mapped.scene(), mapped.edge_m, mapped.height_m, lean)
+        gains::seen_through(mapped.scene(), mapped.edge_m, mapped.height_m, slabs, lean)
     };
     let fin = || texture::composite(hair, &recipe.fins);
-    let ((shells, slab_transmittance, shares), (truth, fin)) = rayon::join(shells, || rayon::join(truth, fin));
+    let ((shells, slab_above, shares), (truth, fin)) = rayon::join(shells, || rayon::join(truth, fin));
     let mut tile = Tile {
         preset: recipe.preset.clone(),
         sampled: Sampled::Square,
         edge_m: hair.edge_m,
         height_m: hair.height_m,
         shells,
-        fin: texture::encode(&fin, hair, &recipe.fins, &slab_transmittance),
+        fin: texture::encode(&fin, hair, &recipe.fins, &slab_above),
         looks: recipe.looks(&shares),
     };
     tile.shells.gains = gains::fit(&tile, &truth, lean);

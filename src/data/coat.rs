@@ -73,15 +73,15 @@ pub struct ShellStack {
     pub layers: u32,
     /// Texels along an edge of mip 0; a power of two.
     pub size: u32,
-    /// Per mip: gains g at [`GAIN_ANGLES_DEG`].
-    pub gains: Vec<[f32; 9]>,
+    /// Per mip and layer (`[mip][layer]`): gains g at [`GAIN_ANGLES_DEG`]. The skin's mean nothing.
+    pub gains: Vec<Vec<[f32; 9]>>,
     /// Per layer: mean slope (dx, dy)/dz of the hair in tile axes.
     pub slopes: Vec<Vec2>,
     /// Per mip: the extinction that a stored 1 stands for, 1/m. A mip's own, so that eight bits still tell directions
     /// where hair fills a hundredth of a texel.
     pub extinction_scales_per_m: Vec<f32>,
-    /// RGBA8 per mip and layer (`[mip][layer]`): straight albedo in sRGB coding, and in alpha the transmittance to the
-    /// outside T₀ (linear), for rays with √(1 − (ω·m)²) = |cos θ|.
+    /// RGBA8 per mip and layer (`[mip][layer]`): straight albedo in sRGB coding, and in alpha the hair area above
+    /// ([`super::shell::above_of`]).
     pub albedo: Vec<Vec<Image8>>,
     /// RGBA8 per mip and layer: A/scale, then A·m/scale as (x, y, z)·127/255 + 128/255, linear.
     pub medium: Vec<Vec<Image8>>,
@@ -100,7 +100,7 @@ pub struct FinTexture {
     pub thickness_m: f32,
     /// RGBA8 per mip: straight albedo in sRGB coding, opacity (linear).
     pub albedo: Vec<Image8>,
-    /// RGBA8 per mip: mean tangent (along the edge, across it, up)·127/255 + 128/255, transmittance to the outside.
+    /// RGBA8 per mip: mean tangent (along the edge, across it, up)·127/255 + 128/255, hair area above.
     pub tangent: Vec<Image8>,
 }
 

@@ -4,11 +4,13 @@
 //! all poses share, [`gpu::Renderer::prepare`] uploads one, [`gpu::Prepared::draw`] draws it. The law of opacity at one pixel, in
 //! plain steps, is [`crate::data::shell`].
 
+mod borders;
 mod casters;
 mod draw_list;
 pub mod gpu;
 mod shadow_view;
 
+pub use borders::away_from_borders;
 pub use casters::{Bounds, Casters};
 pub use draw_list::{CoatMesh, DrawList, Frame, MAX_LIGHTS, Picture, Show, SkinMesh};
 pub use shadow_view::{ShadowView, TEXELS};

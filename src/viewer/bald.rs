@@ -1,10 +1,8 @@
 //! Where skin that should be furred is seen with too little hair over it (`docs/steps/runtime.md`, "Bald skin").
 
-use crate::data::distance::along_edges;
 use crate::math::{Vec3, Vec4};
-use crate::runtime::{CoatMesh, DrawList, Picture};
+use crate::runtime::{CoatMesh, DrawList, Picture, away_from_borders};
 use std::borrow::Cow;
-use std::collections::HashMap;
 
 /// Less than this share of the hair that the model grows there is bald.
 const BALD: f32 = 0.5;
@@ -14,9 +12,6 @@ const UNSEEN: f32 = 4.0;
 const WHOLE: f32 = 0.99;
 /// Skin over which the model grows next to nothing is bare, not bald.
 const LEAST: f32 = 0.05;
-
-/// Cosine between the faces beside an edge below which they are the two sides of a sheet.
-const BACK: f32 = -0.98;
 
 /// Colours of a picture of it: bald skin, skin with as much hair as there should be, everything else.
 const COLOURS: [Vec3; 3] = [Vec3::new(0.8, 0.02, 0.02), Vec3::new(0.2, 0.45, 0.2), Vec3::splat(0.3)];
@@ -82,35 +77,4 @@ pub fn marked<'a>(scene: &DrawList<'a>) -> DrawList<'a> {
         CoatMesh { colour: None, root: Cow::from(root), ..fur.clone() }
     };
     DrawList { furs: scene.furs.iter().zip(away_m).map(mark).collect(), ..scene.clone() }
-}
-
-/// How far each coat vertex is from where the coat ends, along edges, m.
-fn away_from_borders(furs: &[CoatMesh<'_>]) -> Vec<Vec<f32>> {
-    // Places by their bits: what touches is drawn from the same numbers.
-    let mut places: HashMap<[u32; 3], usize> = HashMap::new();
-    let mut at = Vec::new();
-    let mut place = |p: Vec3| {
-        *places.entry(p.to_array().map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
-            at.push(p);
-            at.len() - 1
-        })
-    };
-    let of: Vec<Vec<usize>> = furs.iter().map(|fur| fur.positions_m.iter().map(|&p| place(p)).collect()).collect();
-    let mut edges: HashMap<[usize; 2], Vec<Vec3>> = HashMap::new();
-    for (fur, of) in furs.iter().zip(&of).filter(|(fur, _)| !fur.over_last) {
-        for triangle in fur.triangles {
-            let corners = triangle.map(|v| of[v as usize]);
-            let [p, q, r] = corners.map(|place| at[place]);
-            let normal = (q - p).cross(r - p).normalize_or_zero();
-            for k in 0..3 {
-                let [a, b] = [corners[k], corners[(k + 1) % 3]];
-                edges.entry([a.min(b), a.max(b)]).or_default().push(normal);
-            }
-        }
-    }
-    // The two sides of a sheet end in each other.
-    let ends = |normals: &[Vec3]| normals.iter().skip(1).all(|normal| normal.dot(normals[0]) <= BACK);
-    let borders = edges.iter().filter(|(_, normals)| ends(normals)).flat_map(|(edge, _)| *edge);
-    let away_m = along_edges(&at, edges.keys().copied(), borders);
-    of.iter().map(|of| of.iter().map(|&place| away_m[place]).collect()).collect()
 }

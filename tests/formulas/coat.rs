@@ -5,7 +5,7 @@ use crate::coats;
 use furrier::coat::axes::Stand;
 use furrier::data::coat::Tile;
 use furrier::data::shell::guards::{FADE_BELOW, LEAST_COSINE, MOST_TAPS};
-use furrier::data::shell::{Filled, HairMedium, Incidence, Stack, closeness, depth_of_opacity};
+use furrier::data::shell::{Filled, HairMedium, Incidence, MOST_ABOVE, Stack, closeness, depth_of_opacity};
 use furrier::gpu::{Binding, Gpu, Source, Text};
 use furrier::math::{DVec2, Mat3, Mat4, Vec2, Vec3, Vec4, orthonormal_basis};
 use furrier::runtime::Frame;
@@ -23,8 +23,9 @@ pub const MAIN: Source = Source {
         "
 #import furrier::constants::MOST_TAPS
 #import furrier::view::ray_direction
-#import furrier::coat::{Medium, Ray, frame, hair_frame, ray_in_tile, lateral, across, shadow_slant, path_through_slab, gain, presence,
-    run_through_slab, depth_of_opacity, fin_share, footprint, medium_of, root_of, filled_slab, closeness}
+#import furrier::coat::{Medium, Ray, frame, hair_frame, ray_in_tile, lateral, across, path_through_slab, gain, presence,
+    run_through_slab, depth_of_opacity, fin_share, footprint, medium_of, root_of, filled_slab, closeness,
+    area_above, seen_at, thinned, at_outline, nearness}
 
 @group(2) @binding(0) var<storage, read> inputs: array<vec4<f32>>;
 @group(2) @binding(1) var<storage, read_write> outputs: array<vec4<f32>>;
@@ -65,13 +66,13 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let first = 9u * id.x;
     outputs[first] = vec4(straight.direction, straight.cosine);
     outputs[first + 1u] = vec4(seen.direction, hair.volume);
-    outputs[first + 2u] = vec4(lateral(hair, ray, medium), across(hair, ray, medium), shadow_slant(hair, light, medium), texture.volume);
+    outputs[first + 2u] = vec4(lateral(hair, ray, medium), across(hair, ray, medium), seen_at(chance.x * 4.0), texture.volume);
     outputs[first + 3u] = vec4(run_through_slab(sweep, path_m, slab_m, slope), path_through_slab(straight, slab_m, bend_per_m), seen.fall);
-    outputs[first + 4u] = vec4(gain(level, cosine), presence(up * slab_m), depth_of_opacity(opacity), fin_share(cosine));
+    outputs[first + 4u] = vec4(gain(level, 1u + id.x % 2u, cosine), presence(up * slab_m), depth_of_opacity(opacity), fin_share(cosine, nearness(0.05 * chance.z)));
     outputs[first + 5u] = vec4(spot.line, spot.taps, spot.level);
     outputs[first + 6u] = vec4(spot.round_level, stored.extinction, stored.tangent.x, dot(ray_direction(light), normal));
     outputs[first + 7u] = vec4(f32(filled.layer), filled.slab_m, filled.slabs, closeness(chance.x, chance.y));
-    outputs[first + 8u] = vec4(root.density, root.share, 0.0, 0.0);
+    outputs[first + 8u] = vec4(root.density, root.share, area_above(opacity), thinned(opacity, 2.0 * chance.y));
 }
 ",
     ),
@@ -81,7 +82,7 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
 pub fn gained(layers: u32, size: u32) -> Tile {
     let mut tile = coats::tile(&coats::fox()[..1], 0.008, layers, size, 3);
     let mut stream = furrier::math::hash::Stream::new(21);
-    tile.shells.gains.iter_mut().flatten().for_each(|gain| *gain = 0.5 + stream.unit());
+    tile.shells.gains.iter_mut().flatten().flatten().for_each(|gain| *gain = 0.5 + stream.unit());
     tile
 }
 
@@ -236,17 +237,6 @@ pub fn law(shared: &[Source]) -> Vec<String> {
         worst.note(i, "extinction", square(out[2].x), square(medium.lateral(&seen)));
         let told = tangent.length() > 0.0;
         worst.note(i, "extinction across", square(out[2].y), if told { square(medium.lateral(&seen)) } else { 1.0 });
-        let towards = Stand { normal, axis, up, texture, spread }.seen(-light, 1.0);
-        let steep = f64::from(towards.in_tile().z.abs());
-        let volume = f64::from(seen.volume());
-        let slant = reference::shadow_slant(m, light.as_dvec3(), medium.extinction.into(), tangent, volume, steep);
-        let unit = f64::from(most) / (steep * f64::from(medium.extinction).max(1e-3));
-        worst.note(
-            i,
-            "slant of the shadow",
-            (f64::from(out[2].z) / unit).powi(2) as f32,
-            (slant / unit).powi(2) as f32,
-        );
         let run = (seen.slope() - slope(i)) * slab_m(i) / edge_m;
         worst.note(i, "run through a slab", out[3].x, run.x);
         worst.note(i, "run through a slab", out[3].y, run.y);
@@ -258,6 +248,10 @@ pub fn law(shared: &[Source]) -> Vec<String> {
             worst.note(i, "path through a slab", (f64::from(out[3].z) / path) as f32, 1.0);
         }
         let chance = of(i)[0];
+        worst.note(i, "where a slab is seen", out[2].z, reference::seen_at(f64::from(chance.x) * 4.0) as f32);
+        worst.note(i, "hair area above", out[8].z / MOST_ABOVE, (1.0 - opacity(i)).powi(2));
+        let thinned = reference::thinned(opacity(i).into(), f64::from(chance.y) * 2.0);
+        worst.note(i, "opacity of thinned hair", out[8].w, thinned as f32);
         let filled = Filled::new(1 + (6.99 * chance.w) as u32, chance.x, tile.shells.layers, tile.height_m);
         // Where a slab just ends at a layer, roundings decide which it is.
         let middle = ((6.99 * chance.w).floor()) / chance.x + 0.5 * filled.slabs;
@@ -269,18 +263,23 @@ pub fn law(shared: &[Source]) -> Vec<String> {
         worst.note(i, "closeness", out[7].w, closeness(chance.x, chance.y));
         worst.note(i, "density at the root", out[8].x, chance.x);
         worst.note(i, "length at the root", out[8].y, (chance.y / (0.2 + chance.z)).min(1.0));
-        let mip = level(i) as usize;
+        let (mip, layer) = (level(i) as usize, 1 + i % 2);
         let degrees = f64::from(cosine(i)).acos().to_degrees();
-        let of_mip = |mip: usize| reference::gain(&tile.shells.gains[mip.min(mips - 1)], degrees) as f32;
+        let of_mip = |mip: usize| reference::gain(&tile.shells.gains[mip.min(mips - 1)][layer], degrees) as f32;
         let gain = of_mip(mip) + (of_mip(mip + 1) - of_mip(mip)) * level(i).fract();
         rough.note(i, "gain", out[4].x, gain);
         let flat = Vec3::new((1.0 - cosine(i) * cosine(i)).sqrt(), 0.0, -cosine(i));
         let seen = Incidence::new(flat, Mat3::IDENTITY, level(i).exp2() / size);
-        rough.note(i, "gain of a stack", out[4].x, stack.gain(&seen));
+        rough.note(i, "gain of a stack", out[4].x, stack.gain(layer, &seen));
         let offset = f64::from((up * slab_m(i)).length() / tile.height_m);
         worst.note(i, "presence", out[4].y, reference::smoothstep(0.0, FADE_BELOW.into(), offset) as f32);
         worst.note(i, "depth of an opacity", out[4].z, depth_of_opacity(opacity(i)));
-        rough.note(i, "share of fins", out[4].w, reference::fin_share(cosine(i).into()) as f32);
+        rough.note(
+            i,
+            "share of fins",
+            out[4].w,
+            reference::fin_share(cosine(i).into(), (1.0 - 24.0 * 0.05 * f64::from(of(i)[0].z)).clamp(0.0, 1.0)) as f32,
+        );
         let [dx, dy] = pixel(i);
         let vectors: [DVec2; 3] = [dx, dy, slope(i)].map(|v| v.as_dvec2());
         let spot = reference::footprint(vectors, size.into(), mips as f64, MOST_TAPS.into());

@@ -12,10 +12,10 @@ use std::path::Path;
 pub const ELSEWHERE: &[(&str, &[&str], &str)] = &[
     (
         "runtime/shell.wgsl",
-        &["vertex", "place_of", "met", "fragment"],
-        "twins.rs compares pictures of planes with the law on the CPU",
+        &["bend_along", "way_of", "out_of_sight", "vertex", "place_of", "met", "nothing", "fragment"],
+        "twins.rs compares pictures of planes with the law on the CPU, coat_light.rs their light with the renderer's",
     ),
-    ("runtime/fin.wgsl", &["vertex", "fragment"], "look.rs compares pixels of a fin"),
+    ("runtime/fin.wgsl", &["chance", "bend_along", "vertex", "fragment"], "look.rs compares pixels of a fin"),
     ("runtime/skin.wgsl", &["vertex", "fragment"], "look.rs compares pixels of skin"),
     ("runtime/caster.wgsl", &["vertex"], SHADOWS),
     ("shared/shadow_map.wgsl", &["key_share"], SHADOWS),

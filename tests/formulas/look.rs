@@ -5,8 +5,7 @@ use crate::coats;
 use furrier::data::coat::{FinEdge, Tile, TileLooks};
 use furrier::data::image::linear_from_srgb;
 use furrier::data::light::Directional;
-use furrier::data::shell::guards::LEAST_COSINE;
-use furrier::data::shell::{depth_of_opacity, signed, unorm};
+use furrier::data::shell::{above_of, signed, unorm};
 use furrier::gpu::{Source, Text};
 use furrier::math::{DVec3, Mat4, Vec2, Vec3, Vec4};
 use furrier::runtime::gpu::Renderer;
@@ -14,16 +13,17 @@ use furrier::runtime::gpu::pipelines::SHARED;
 use furrier::runtime::{CoatMesh, DrawList, Frame, Show, SkinMesh};
 use furrier::shade::Angles;
 use furrier::shade::law::Place;
+use furrier::volume::scene::{slant_depth, terminator};
 
 /// Vectors per input.
-const OUTPUTS: usize = 1;
+const OUTPUTS: usize = 2;
 
 /// Evaluates the formulas of `shading.wgsl`.
 pub const MAIN: Source = Source {
     path: "formulas/look.wgsl",
     text: Text::Wgsl(
         "
-#import furrier::shading::{above_horizon, skin_radiance}
+#import furrier::shading::{past_skin, skin_radiance, way_up}
 
 @group(2) @binding(0) var<storage, read> inputs: array<vec4<f32>>;
 @group(2) @binding(1) var<storage, read_write> outputs: array<vec4<f32>>;
@@ -35,7 +35,11 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let normal = inputs[i + 1u].xyz;
     let viewer = inputs[i + 2u].xyz;
     let light = inputs[i + 3u].xyz;
-    outputs[id.x] = vec4(skin_radiance(albedo, normal, viewer, light, inputs[i + 1u].w), above_horizon(inputs[i].w));
+    let rise = inputs[i].w;
+    let bend_per_m = inputs[i + 2u].w;
+    let height_m = inputs[i + 3u].w;
+    outputs[2u * id.x] = vec4(skin_radiance(albedo, normal, viewer, light, inputs[i + 1u].w), 0.0);
+    outputs[2u * id.x + 1u] = vec4(log(way_up(rise, bend_per_m, height_m)), past_skin(rise, bend_per_m, height_m), 0.0, 0.0);
 }
 ",
     ),
@@ -51,18 +55,20 @@ fn shaders_and_rust_agree_on_light_on_skin() {
         inputs.extend([
             u[0].truncate().extend(2.0 * u[0].w - 1.0),
             sphere(u[1]).extend(u[1].w),
-            sphere(u[2]).extend(0.0),
-            sphere(u[3]).extend(0.0),
+            sphere(u[2]).extend(40.0 * u[2].w - 5.0),
+            sphere(u[3]).extend(0.02 * u[3].w),
         ]);
     }
     let outputs = on_device(&gpu, &SHARED, MAIN, &coat::groups(&gpu, &coat::gained(3, 8)), &inputs, OUTPUTS);
     let mut worst = Worst::default();
     for i in 0..COUNT {
-        let (given, out) = (&inputs[4 * i..][..4], outputs[i]);
+        let (given, out) = (&inputs[4 * i..][..4], &outputs[OUTPUTS * i..][..OUTPUTS]);
         let [albedo, normal, viewer, light] = [0, 1, 2, 3].map(|k| given[k].truncate().as_dvec3());
-        worst.note(i, "horizon", out.w, reference::above_horizon(given[0].w.into()) as f32);
+        let [rise, bend_per_m, height_m] = [0, 2, 3].map(|k| f64::from(given[k].w));
+        worst.note(i, "way up", out[1].x, reference::way_up(rise, bend_per_m, height_m).ln() as f32);
+        worst.note(i, "past the skin", out[1].y, reference::past_skin(rise, bend_per_m, height_m) as f32);
         let skin = reference::skin_radiance(albedo, normal, viewer, light, given[1].w.into());
-        worst.note_all(i, "skin", out.truncate(), skin.as_vec3());
+        worst.note_all(i, "skin", out[0].truncate(), skin.as_vec3());
     }
     hold(worst.faults(2e-4));
 }
@@ -92,6 +98,8 @@ fn plain_tile() -> Tile {
     let fill = |image: &mut furrier::data::image::Image8, bytes: [u8; 4]| {
         image.pixels.chunks_exact_mut(4).for_each(|texel| texel.copy_from_slice(&bytes));
     };
+    // The fins are as tall.
+    tile.height_m = 6.0;
     tile.shells.albedo.iter_mut().for_each(|layers| fill(&mut layers[0], SKIN));
     tile.fin.albedo.iter_mut().for_each(|image| fill(image, FIN));
     tile.fin.tangent.iter_mut().for_each(|image| fill(image, TANGENT));
@@ -144,7 +152,7 @@ fn skin_is_lit_as_its_formulas_say() {
         let pixel = renderer.prepare(&list).unwrap().draw(&frame, Show::default()).unwrap().picture.pixels[5];
         let albedo = base.as_dvec3() * if density > 0.0 { colour(SKIN) } else { DVec3::ONE };
         // What is seen of hair's shadow on skin counts up to 1.5.
-        let depth = f64::from(-unorm(SKIN[3]).ln() * density).min(1.5);
+        let depth = f64::from(above_of(SKIN[3]) * density).min(1.5);
         let gloss = if density > 0.0 { 0.0 } else { 1.0 };
         let mut radiance = albedo * frame.ambient.as_dvec3() * (-depth).exp();
         for light in frame.lights.iter().map(|light| light.at(Vec3::ZERO)) {
@@ -166,7 +174,7 @@ fn fins_are_as_opaque_and_as_bright_as_their_formulas_say() {
     let (start, end, offset) = (Vec3::new(-3.0, -3.0, 0.0), Vec3::new(3.0, -3.0, 0.5), Vec3::new(0.6, 6.0, 0.8));
     let normal = Vec3::new(0.3, 0.5, 0.8).normalize();
     let tint = Vec4::new(0.9, 0.8, 1.1, 0.7);
-    let thickness = 1.3;
+    let thickness = 3.0;
     let mut seen = 0;
     for ray in rays() {
         let fur = CoatMesh {
@@ -187,30 +195,34 @@ fn fins_are_as_opaque_and_as_bright_as_their_formulas_say() {
         let (across, along) = ((end - start).cross(offset).normalize(), (end - start).normalize());
         let facing = across.dot(ray).abs();
         let weight = (2.0 * facing - 1.0).max(0.0) / facing;
-        let depth = f64::from(depth_of_opacity(unorm(FIN[3])) * thickness * weight * tint.w);
-        let alpha = -(-depth).exp_m1();
+        let near_outline = reference::at_outline(normal.dot(ray).into(), 0.0);
+        let amount = f64::from(thickness * weight * tint.w) * near_outline;
+        let alpha = reference::thinned(unorm(FIN[3]).into(), amount);
         let stored = Vec3::from([0, 1, 2].map(|i| signed(TANGENT[i])));
         let up = offset.normalize();
         let tangent = (along * stored.x + across * stored.y + up * stored.z).normalize().as_dvec3();
         let albedo = colour(FIN) * tint.truncate().as_dvec3();
-        let outside = f64::from(-unorm(TANGENT[3]).ln() * tint.w);
+        let outside = f64::from(above_of(TANGENT[3]) * tint.w * offset.length() / tiles[0].height_m);
         let [look, _] = super::law::looks();
         let worn = look.wear(albedo.to_array());
         let (normal, to_eye) = (normal.as_dvec3(), -ray.as_dvec3());
+        let crowding = f64::from(CROWDING * tint.w);
         let radiance_of = |to_light: DVec3, depth: f64| {
             let angles = Angles::of_dvectors(tangent, to_light, to_eye);
             let normals = [tangent.dot(normal), to_eye.dot(normal), to_light.dot(normal)];
             let place = Place::new(angles, to_light.dot(to_eye), outside, depth, normals);
-            [look.light(angles, &place, &worn, f64::from(CROWDING)), look.sky(&place, &worn, f64::from(CROWDING))]
-                .map(DVec3::from)
+            [look.light(angles, &place, &worn, crowding), look.sky(&place, &worn, crowding)].map(DVec3::from)
         };
         let mut radiance = frame.ambient.as_dvec3() * radiance_of(normal, outside)[1];
-        for light in frame.lights.iter().map(|light| light.at(Vec3::ZERO)) {
+        for (i, light) in frame.lights.iter().map(|light| light.at(Vec3::ZERO)).enumerate() {
             let to_light = light.to_light.as_dvec3();
-            let cosine = normal.dot(to_light);
-            let lateral = (1.0 - tangent.dot(to_light).powi(2)).max(0.0).sqrt();
-            let depth = outside * lateral / cosine.abs().max(f64::from(LEAST_COSINE));
-            let open = reference::above_horizon(cosine);
+            let (rise, lateral) = (normal.dot(to_light), (1.0 - tangent.dot(to_light).powi(2)).max(0.0).sqrt());
+            let [n, t] = [normal, tangent].map(|v| v.as_vec3());
+            let (depth, open) = match i {
+                // Of one fin nothing is known to bend.
+                0 => (outside * lateral * reference::way_up(rise, 0.0, 1.0), reference::past_skin(rise, 0.0, 1.0)),
+                _ => (slant_depth(outside as f32, light.to_light, n, t).into(), terminator(light.to_light, n).into()),
+            };
             radiance += open * light.irradiance.as_dvec3() * radiance_of(to_light, depth)[0];
         }
         println!("facing {facing:.2}: {pixel:?} for {} and {alpha}", radiance * alpha);

@@ -1,11 +1,11 @@
 //! Formulas of the shaders that Rust has no other use for, written down from their equations: f64 where that is shorter.
 
 use furrier::data::coat::GAIN_ANGLES_DEG;
-use furrier::data::shell::guards::{LEAST_COSINE, LEAST_EXTINCTION};
+use furrier::data::shell::guards::{LEAST_CLEAR, LEAST_COSINE};
 use furrier::math::{DVec2, DVec3, Vec3};
 use furrier::shade::fibre::{Fibre, FibreLobe};
 use furrier::shade::law::polynomial::LOWEST_LIGHT;
-use furrier::shade::law::{FADING, LEAST_ABOVE, MOST_SLANT};
+use furrier::shade::law::{FADING, LEAST_ABOVE, MOST_KNOWN, MOST_SLANT};
 use furrier::volume::mean;
 use furrier::volume::shell::lattice;
 use furrier::volume::shell::prism::ShellPoint;
@@ -67,12 +67,18 @@ pub fn path_through_slab(steep: f64, fall: f64, slab_m: f64, bend_per_m: f64) ->
     above
 }
 
-/// Mean weight max(0, 2|p| − 1) of fins over edges of every direction ψ, p = sin α cos ψ: by sums.
-pub fn fin_share(cos_view: f64) -> f64 {
+/// Mean weight max(0, 2|p| − 1) of fins over edges of every direction ψ, p = sin α cos ψ, by sums; from afar at the outline alone.
+pub fn fin_share(cos_view: f64, near: f64) -> f64 {
     let sine = (1.0 - cos_view * cos_view).max(0.0).sqrt();
     let n = 4000;
     let weight = |i: usize| (2.0 * (sine * ((i as f64 + 0.5) / n as f64 * PI).cos()).abs() - 1.0).max(0.0);
-    (0..n).map(weight).sum::<f64>() / n as f64
+    (0..n).map(weight).sum::<f64>() / n as f64 * at_outline(cos_view, near)
+}
+
+/// How far fins stand for hair, from afar and near by.
+pub fn at_outline(cos_view: f64, near: f64) -> f64 {
+    let edge = 0.16 * (1.0 - near) + 0.5 * near;
+    1.0 - smoothstep(edge, 2.0 * edge, cos_view.abs())
 }
 
 /// A fetch: from the first to the last tap, taps, their level, and the level of equal area.
@@ -113,25 +119,43 @@ pub fn gain(gains: &[f32; 9], degrees: f64) -> f64 {
     f64::from(gains[after - 1]) * (1.0 - share) + f64::from(gains[after]) * share
 }
 
-/// How much more hair a light meets than at 45° to upright hair. Columns of M; A and A·m; `volume` and |d_z| are guarded.
-pub fn shadow_slant(m: [DVec3; 3], light: DVec3, extinction: f64, tangent: DVec3, volume: f64, steep: f64) -> f64 {
-    let out = |v: DVec3| m[0] * v.x + m[1] * v.y + m[2] * v.z;
-    let size = tangent.length();
-    let stretched = if size > 0.0 { extinction * out(tangent / size).length() } else { extinction };
-    let along = light.dot(out(tangent));
-    (stretched * stretched - along * along).max(0.0).sqrt()
-        / (volume * steep * extinction.max(f64::from(LEAST_EXTINCTION)))
+/// How deep in a layer lies what is seen of it, as a share of its thickness: where light leaves it, weighted by what gets out, by sums.
+pub fn seen_at(depth: f64) -> f64 {
+    let n = 4000;
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for at in (0..n).map(|i| (f64::from(i) + 0.5) / f64::from(n)) {
+        let weight = (-depth * at).exp();
+        sum += weight * at;
+        weights += weight;
+    }
+    sum / weights
+}
+
+/// Opacity of `amount` times as much hair: that part of it, or as many layers of it.
+pub fn thinned(opacity: f64, amount: f64) -> f64 {
+    if amount < 1.0 { amount * opacity } else { 1.0 - (1.0 - opacity).max(LEAST_CLEAR.into()).powf(amount) }
+}
+
+/// Chapman's function as the shaders have it: [`super::way`] compares it with the integral.
+pub fn way_up(rise: f64, bend_per_m: f64, scale_m: f64) -> f64 {
+    let bent = bend_per_m.max(0.0) * scale_m;
+    let steep = rise.abs();
+    let out = 2.0 / (steep + (steep * steep + 16.0 / PI * bent).sqrt()).max(0.04);
+    let level = (PI / bent.max(1e-6)).sqrt();
+    let through = (steep * steep / (4.0 * bent).max(1e-6)).min(20.0).exp();
+    if rise >= 0.0 { out } else { level * through - out }
+}
+
+/// Share of a light that comes by the skin to a height above it.
+pub fn past_skin(rise: f64, bend_per_m: f64, height_m: f64) -> f64 {
+    let sunk_m = rise * rise / (4.0 * bend_per_m).max(1e-6);
+    if rise >= 0.0 { 1.0 } else { 1.0 - smoothstep(0.3, 1.0, sunk_m / height_m.max(1e-9)) }
 }
 
 /// Smooth step from 0 at `from` to 1 at `to`.
 pub fn smoothstep(from: f64, to: f64, x: f64) -> f64 {
     let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
-}
-
-/// Share of a light that hair over skin at this cosine to it sees.
-pub fn above_horizon(cos_light: f64) -> f64 {
-    smoothstep(-0.35, 0.1, cos_light)
 }
 
 /// 1/cos θ_t by Snell's law, the cosine 0.1 at least.
@@ -158,8 +182,9 @@ pub fn gaps(cos_azimuth: f32, light_normal: f32) -> f32 {
 
 /// What is left of scattered light by the depth that is more than 1.25 times the hair above, 0.1 at least, on the light's slant.
 pub fn beyond(above: f32, depth: f32, light_normal: f32) -> f32 {
-    let most = f64::from(above).max(LEAST_ABOVE) * MOST_SLANT / f64::from(light_normal).max(LOWEST_LIGHT);
-    (-FADING * (f64::from(depth) - most).max(0.0)).exp() as f32
+    let most = f64::from(above).max(LEAST_ABOVE) * MOST_SLANT
+        / ((f64::from(light_normal) - LOWEST_LIGHT).abs() + LOWEST_LIGHT);
+    (-FADING * (f64::from(depth) - most.min(MOST_KNOWN)).max(0.0)).exp() as f32
 }
 
 /// Radiance of skin: Lambert, and a Blinn-Phong lobe of exponent 60 under Schlick's Fresnel term.

@@ -93,7 +93,7 @@ fn what_strands_let_through_tells_a_mip_whose_gains_are_left_out() {
     let (tile, truth) = crate::gains::tile_and_truth();
     for mip in 0..tile.shells.gains.len() {
         let mut faulty = tile.clone();
-        faulty.shells.gains[mip] = [1.0; 9];
+        faulty.shells.gains[mip].fill([1.0; 9]);
         let off = crate::gains::off(&faulty, &truth, mip);
         assert!(off > crate::gains::BOUND, "mip {mip}: {off}");
         if mip == 1 {

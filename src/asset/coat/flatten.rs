@@ -16,12 +16,11 @@ pub fn shells(stack: &ShellStack, height_m: f32, count: u32) -> Vec<Image8> {
     let slabs = stack.layers - 1;
     let count = count.clamp(1, slabs);
     let thickness_m = height_m / slabs as f32;
-    let gain = gain_at(&stack.gains[0], VIEW_DEG);
     let of_shell = |shell: u32| {
         let (first, last) = (shell * slabs / count + 1, (shell + 1) * slabs / count);
         let mut image = Image8::new(stack.size, stack.size, 4);
         for texel in 0..(stack.size * stack.size) as usize {
-            let colour = composite(stack, (first..=last).rev(), texel, gain, thickness_m);
+            let colour = composite(stack, (first..=last).rev(), texel, thickness_m);
             image.pixels[4 * texel..][..4].copy_from_slice(&colour);
         }
         image
@@ -30,18 +29,12 @@ pub fn shells(stack: &ShellStack, height_m: f32, count: u32) -> Vec<Image8> {
 }
 
 /// Slabs from the outermost, over one another.
-fn composite(
-    stack: &ShellStack,
-    slabs: impl Iterator<Item = u32>,
-    texel: usize,
-    gain: f32,
-    thickness_m: f32,
-) -> [u8; 4] {
+fn composite(stack: &ShellStack, slabs: impl Iterator<Item = u32>, texel: usize, thickness_m: f32) -> [u8; 4] {
     let (mut colour, mut plain, mut clear, mut n) = (Vec3::ZERO, Vec3::ZERO, 1.0, 0.0);
     for slab in slabs {
         let albedo = &stack.albedo[0][slab as usize].pixels[4 * texel..][..3];
         let albedo = Vec3::from_array([0, 1, 2].map(|i| linear_from_srgb(unorm(albedo[i]))));
-        let alpha = opacity(stack, slab as usize, texel, gain, thickness_m);
+        let alpha = opacity(stack, slab as usize, texel, thickness_m);
         colour += clear * alpha * albedo;
         clear *= 1.0 - alpha;
         plain += albedo;
@@ -54,7 +47,8 @@ fn composite(
 }
 
 /// A slab's opacity by the coat's law at [`VIEW_DEG`], its mean over azimuths.
-fn opacity(stack: &ShellStack, slab: usize, texel: usize, gain: f32, thickness_m: f32) -> f32 {
+fn opacity(stack: &ShellStack, slab: usize, texel: usize, thickness_m: f32) -> f32 {
+    let gain = gain_at(&stack.gains[0][slab], VIEW_DEG);
     let bytes = &stack.medium[0][slab].pixels[4 * texel..][..4];
     let medium = HairMedium::decode(bytes, stack.extinction_scales_per_m[0]);
     let kappa = depth_of_byte(stack.ends[0][slab].pixels[texel]);

@@ -5,11 +5,15 @@ use super::{NAME, VERSION, textures};
 use crate::asset::json::At;
 use crate::asset::material::texture_of;
 use crate::asset::{self, Asset, Part};
-use crate::data::coat::{Blend, Coat, CoatPrimitive, FinEdge};
+use crate::data::coat::{Blend, Coat, CoatPrimitive, FinEdge, Tile};
+use crate::data::shell::{above_of_transmittance, code_above};
 use crate::error::{Error, Result};
 use crate::math::{Vec2, Vec3, Vec4};
 use std::collections::HashMap;
 use std::path::Path;
+
+/// Newest version whose tiles hold what light at 45° comes through to a texel, where later ones hold the hair area above it.
+const LAST_OF_TRANSMITTANCE: usize = 2;
 
 /// Reads a file that has a coat.
 ///
@@ -19,6 +23,15 @@ pub fn read_coat(path: &Path) -> Result<(Asset, Coat)> {
     let asset = asset::load(&path.to_string_lossy())?;
     let coat = coat_of(&asset).map_err(|error| error.with_file(path))?;
     Ok((asset, coat))
+}
+
+/// What a tile of an old version says of the light that reaches its texels, as hair area above them.
+fn recode_above(tile: &mut Tile) {
+    let codes: [u8; 256] = std::array::from_fn(|byte| code_above(above_of_transmittance(byte as u8)));
+    let fin = tile.fin.tangent.iter_mut();
+    for image in tile.shells.albedo.iter_mut().flatten().chain(fin) {
+        image.pixels.iter_mut().skip(3).step_by(4).for_each(|byte| *byte = codes[usize::from(*byte)]);
+    }
 }
 
 /// The coat that an asset carries.
@@ -47,7 +60,11 @@ pub fn coat_of(asset: &Asset) -> Result<Coat> {
     }
     let mut coat = Coat { metres_per_unit, ..Coat::default() };
     for tile in extension.list("tiles")? {
-        coat.tiles.push(textures::read(document, &tile)?);
+        let mut tile = textures::read(document, &tile)?;
+        if version.size()? <= LAST_OF_TRANSMITTANCE {
+            recode_above(&mut tile);
+        }
+        coat.tiles.push(tile);
     }
     // Coat vertices that several coats share, by their accessors.
     let mut pools: Vec<String> = Vec::new();

@@ -36,7 +36,7 @@ pub fn write(document: &mut Document, tile: &Tile) -> Result<Value> {
             "size": shells.size,
             "extinctionScales": numbers(&shells.extinction_scales_per_m),
             "gainAngles": numbers(&GAIN_ANGLES_DEG),
-            "gains": shells.gains.iter().map(|g| numbers(g)).collect::<Vec<_>>(),
+            "gains": shells.gains.iter().map(|mip| mip.iter().map(|g| numbers(g)).collect()).collect::<Vec<Vec<_>>>(),
             "slopes": shells.slopes.iter().map(|s| numbers(&s.to_array())).collect::<Vec<_>>(),
             "albedo": albedo,
             "medium": medium,
@@ -117,13 +117,20 @@ pub fn read(document: &Document, at: &At<'_>) -> Result<Tile> {
     if angles.numbers::<9>()?.iter().zip(GAIN_ANGLES_DEG).any(|(&a, b)| (a - f64::from(b)).abs() > 1e-6) {
         return Err(angles.fault(&format!("{GAIN_ANGLES_DEG:?}")));
     }
-    let gains = shells.list("gains")?;
-    let gains = gains.iter().map(|g| Ok(g.numbers::<9>()?.map(|n| n as f32))).collect::<Result<Vec<_>>>()?;
     let slopes = shells.list("slopes")?;
     let slopes = slopes.iter().map(|s| s.numbers::<2>().map(|n| Vec2::new(n[0] as f32, n[1] as f32)));
     let (albedo, medium, ends) =
         (array("albedo", Format::Rgba8Srgb)?, array("medium", Format::Rgba8)?, array("ends", Format::R8)?);
     let (fin_albedo, fin_tangent) = (single("albedo", Format::Rgba8Srgb)?, single("tangent", Format::Rgba8)?);
+    // Up to version 2 a mip's layers have one row together.
+    let row = |at: &At<'_>| -> Result<[f32; 9]> { Ok(at.numbers::<9>()?.map(|n| n as f32)) };
+    let of_mip = |at: &At<'_>| -> Result<Vec<[f32; 9]>> {
+        match at.value.get(0) {
+            Some(Value::Array(_)) => at.entries()?.iter().map(row).collect(),
+            _ => Ok(vec![row(at)?; albedo.first().map_or(0, Vec::len)]),
+        }
+    };
+    let gains = shells.list("gains")?.iter().map(of_mip).collect::<Result<Vec<_>>>()?;
     let size = fin.need("size")?.numbers::<2>()?.map(|n| n as u32);
     let alike = |list: &[Image8]| list.first().is_some_and(|image| [image.width, image.height] == size);
     if fin_albedo.len() != fin_tangent.len() || !alike(&fin_albedo) || !alike(&fin_tangent) {
@@ -136,11 +143,14 @@ pub fn read(document: &Document, at: &At<'_>) -> Result<Tile> {
     let scales = shells.list("extinctionScales")?;
     let scales = scales.iter().map(positive).collect::<Result<Vec<_>>>()?;
     if gains.len() != albedo.len()
+        || gains.iter().any(|mip| mip.len() != albedo[0].len())
         || scales.len() != albedo.len()
         || slopes.len() != albedo[0].len()
         || albedo[0].len() < 2
     {
-        return Err(shells.need("gains")?.fault("one row per mip, one slope per layer, and at least 2 layers"));
+        return Err(shells
+            .need("gains")?
+            .fault("one row per mip and layer, one slope per layer, and at least 2 layers"));
     }
     let sampled = match at.get("sampled") {
         None => Sampled::Square,

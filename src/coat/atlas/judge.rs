@@ -302,8 +302,8 @@ impl Judge<'_> {
                 let slab_m = self.stack.slab_m();
                 let law = slab_optical_depth(&self.stack.fetch_middle(layer, at, &seen), &seen, slab_m);
                 let plain = slab_optical_depth(&self.stack.fetch_middle(layer, at, &above), &above, slab_m);
-                depths[0] += density * self.stack.gain(&seen) * law;
-                depths[1] += density * self.stack.gain(&above) * plain;
+                depths[0] += density * self.stack.gain(layer, &seen) * law;
+                depths[1] += density * self.stack.gain(layer, &above) * plain;
             }
         }
         depths

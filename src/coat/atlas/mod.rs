@@ -9,10 +9,11 @@ pub mod judge;
 
 use crate::coat::fins::texture;
 use crate::coat::hair::{TileHair, leaning};
+use crate::coat::shells::above::Above;
 use crate::coat::shells::deposit::{VoxelLayout, Voxels, mean_slopes};
 use crate::coat::shells::encode::{Raw, encode};
 use crate::coat::shells::undercoat::{self, Profile};
-use crate::coat::shells::{ends, gains, shadow};
+use crate::coat::shells::{ends, gains};
 use crate::coat::tile::{TileRecipe, slab_means, undercoat_shares};
 use crate::data::coat::{Sampled, Tile};
 use crate::data::fields::Fields;
@@ -39,6 +40,8 @@ const FURTHEST: f32 = 32.0;
 const REFERENCE: (usize, usize) = (8, 256);
 /// Points along a texel's edge that decide how much of it is skin.
 const SAMPLES: usize = 4;
+/// Distances between hairs, to each side, over which guard hair is smoothed.
+const SMOOTHED: f32 = 2.0;
 /// Least share of skin in a texel that its hair is divided by.
 const LEAST_SHARE: f32 = 0.25;
 
@@ -74,6 +77,12 @@ impl Thinned {
         Self { fibre, thinning, width_m: if thinning > 1.0 { distance_m } else { 0.0 } }
     }
 
+    /// How far around hair is smoothed to be as dense as it is in the mean: over clumps and single hairs.
+    fn reach_texels(&self, texel_m: f32) -> usize {
+        let distance_m = SMOOTHED / self.fibre.density_per_m2.max(1e-6).sqrt();
+        (distance_m.max(self.fibre.shape.clump.spacing_mm * 1e-3) / texel_m).ceil().min(FURTHEST) as usize
+    }
+
     /// Voxels of it, and what its ends add.
     fn deposit(&self, layout: VoxelLayout, strands: &Strands, slopes: &[Vec2]) -> (Voxels, Vec<f32>) {
         let mut voxels = Voxels::new(layout);
@@ -87,14 +96,14 @@ impl Thinned {
 struct Filled {
     voxels: Voxels,
     ends: Vec<f32>,
-    transmittance: Vec<f32>,
-    skin_transmittance: Vec<f32>,
+    above: Above,
 }
 
 impl Filled {
-    fn new(voxels: Voxels, ends: Vec<f32>) -> Self {
-        let (transmittance, skin_transmittance) = shadow::transmittance(&voxels, &ends);
-        Self { voxels, ends, transmittance, skin_transmittance }
+    /// `reach_texels` is how far around it is in the mean.
+    fn new(voxels: Voxels, ends: Vec<f32>, reach_texels: usize, skin_share: &[f32]) -> Self {
+        let above = Above::new(&voxels.layout, &voxels.extinction, reach_texels, skin_share);
+        Self { voxels, ends, above }
     }
 }
 
@@ -113,8 +122,7 @@ pub fn bake(skins: &[AtlasSkin<'_>], square: &Square, hair: [&Fibre; 2], recipe:
     let mut all = Filled {
         voxels: Voxels::new(layout),
         ends: vec![0.0; n * slabs],
-        transmittance: vec![1.0; n * slabs],
-        skin_transmittance: vec![1.0; n],
+        above: Above { voxels: vec![0.0; n * slabs], skin: vec![0.0; n] },
     };
     let mut skin_share = vec![0.0; n];
     for (skin, rectangles) in skins.iter().zip(&square.charts) {
@@ -143,15 +151,14 @@ pub fn bake(skins: &[AtlasSkin<'_>], square: &Square, hair: [&Fibre; 2], recipe:
     let shells = encode(&Raw {
         voxels: &all.voxels,
         ends: &all.ends,
-        transmittance: &all.transmittance,
-        skin_transmittance: &all.skin_transmittance,
+        above: &all.above,
         skin: recipe.skin,
         slopes: &reference.slopes,
         skin_share: &skin_share,
     });
     let mut tile = Tile { sampled: Sampled::Skin, edge_m: square.edge_m, shells, ..reference.tile };
     let gains = &reference.gains;
-    tile.shells.gains = (0..tile.shells.albedo.len()).map(|mip| gains[mip.min(gains.len() - 1)]).collect();
+    tile.shells.gains = (0..tile.shells.albedo.len()).map(|mip| gains[mip.min(gains.len() - 1)].clone()).collect();
     tile
 }
 
@@ -160,7 +167,7 @@ struct Reference {
     /// Every hair, on a tile as a tiled coat has it.
     hair: TileHair,
     slopes: Vec<Vec2>,
-    gains: Vec<[f32; 9]>,
+    gains: Vec<Vec<[f32; 9]>>,
     /// Thinned as the atlas is, with texels of the atlas's size.
     tile: Tile,
     /// Furthest that a point of a hair is from its root, along the skin, m.
@@ -186,7 +193,7 @@ impl Reference {
         let lean = leaning(recipe.lean_deg);
         let truth = || {
             let mapped = full.mapped(lean);
-            gains::strand_transmittance(mapped.scene(), mapped.edge_m, mapped.height_m, lean)
+            gains::seen_through(mapped.scene(), mapped.edge_m, mapped.height_m, slabs, lean)
         };
         let stack = || {
             let slopes = mean_slopes(&thin.guard, slabs, full.height_m);
@@ -197,7 +204,7 @@ impl Reference {
                 undercoat::add(medium, &slopes, &mut voxels, &mut ends);
             }
             let shares = undercoat_shares(&guard_means, &slab_means(&voxels.extinction, slabs));
-            (Filled::new(voxels, ends), slopes, shares)
+            (Filled::new(voxels, ends, 0, &[]), slopes, shares)
         };
         let along_skin = fins::grown(skins, hair, &full, combine(seed, 3));
         let fin_hair = along_skin.as_ref().unwrap_or(&full);
@@ -206,13 +213,12 @@ impl Reference {
         let shells = encode(&Raw {
             voxels: &filled.voxels,
             ends: &filled.ends,
-            transmittance: &filled.transmittance,
-            skin_transmittance: &filled.skin_transmittance,
+            above: &filled.above,
             skin: recipe.skin,
             slopes: &slopes,
             skin_share: &[],
         });
-        let fin = texture::encode(&fin, fin_hair, &recipe.fins, &slab_means(&filled.transmittance, slabs));
+        let fin = texture::encode(&fin, fin_hair, &recipe.fins, &slab_means(&filled.above.voxels, slabs));
         let tile = Tile {
             preset: recipe.preset.clone(),
             sampled: Sampled::Square,
@@ -272,7 +278,7 @@ impl Grown<'_> {
         if let Some(medium) = &reference.hair.undercoat {
             self.ground.add(&region, &Profile::new(medium, &layout), &mut voxels, &mut ends);
         }
-        let filled = Filled::new(voxels, ends);
+        let filled = Filled::new(voxels, ends, guard.reach_texels(layout.texel_m), &skin_share);
         Chart { rectangle, margin: margin as usize, filled, skin_share }
     }
 }
@@ -303,8 +309,7 @@ impl Chart {
             let source = (y + self.margin) * from.size[0] + self.margin;
             let target = (top + y) * to.size[0] + left;
             skin_share[target..target + width].copy_from_slice(&self.skin_share[source..source + width]);
-            all.skin_transmittance[target..target + width]
-                .copy_from_slice(&self.filled.skin_transmittance[source..source + width]);
+            all.above.skin[target..target + width].copy_from_slice(&self.filled.above.skin[source..source + width]);
             for slab in 0..to.slabs {
                 let (s, t) = (slab * from.texels() + source, slab * to.texels() + target);
                 let (own, voxels) = (&self.filled.voxels, &mut all.voxels);
@@ -312,7 +317,7 @@ impl Chart {
                 voxels.tangent[t..t + width].copy_from_slice(&own.tangent[s..s + width]);
                 voxels.colour[t..t + width].copy_from_slice(&own.colour[s..s + width]);
                 all.ends[t..t + width].copy_from_slice(&self.filled.ends[s..s + width]);
-                all.transmittance[t..t + width].copy_from_slice(&self.filled.transmittance[s..s + width]);
+                all.above.voxels[t..t + width].copy_from_slice(&self.filled.above.voxels[s..s + width]);
             }
         }
     }

@@ -1,8 +1,10 @@
 //! Voxels into textures: mips, dilation, eight bits (the channels of [`ShellStack`]).
 
+use super::above::Above;
 use super::deposit::Voxels;
 use crate::data::coat::ShellStack;
 use crate::data::image::{Image8, srgb_from_linear, unorm8};
+use crate::data::shell::code_above;
 use crate::math::{Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -15,7 +17,8 @@ struct Texel {
     colour: Vec3,
     /// 1 − e^−κ.
     ends: f32,
-    transmittance: f32,
+    /// Hair area above per skin area.
+    above: f32,
     /// Share of the texel that is skin.
     weight: f32,
 }
@@ -26,10 +29,8 @@ pub struct Raw<'a> {
     pub voxels: &'a Voxels,
     /// κ per voxel.
     pub ends: &'a [f32],
-    /// T₀ per voxel.
-    pub transmittance: &'a [f32],
-    /// T₀ on the skin.
-    pub skin_transmittance: &'a [f32],
+    /// Hair area above.
+    pub above: &'a Above,
     /// Skin colour factor, linear.
     pub skin: Vec3,
     /// Mean slope per slab.
@@ -44,15 +45,16 @@ pub fn encode(raw: &Raw<'_>) -> ShellStack {
     let size = voxels.layout.size[0];
     let weight = |texel: usize| raw.skin_share.get(texel).copied().unwrap_or(1.0);
     let mut layers: Vec<Vec<Texel>> = vec![
-        raw.skin_transmittance
+        raw.above
+            .skin
             .iter()
             .enumerate()
-            .map(|(i, &transmittance)| Texel {
+            .map(|(i, &above)| Texel {
                 extinction: 1.0,
                 tangent: Vec3::Z,
                 colour: raw.skin,
                 ends: 1.0,
-                transmittance,
+                above,
                 weight: weight(i),
             })
             .collect(),
@@ -65,7 +67,7 @@ pub fn encode(raw: &Raw<'_>) -> ShellStack {
                 tangent: voxels.tangent[v],
                 colour: voxels.colour[v],
                 ends: -libm::expm1f(-raw.ends[v]),
-                transmittance: raw.transmittance[v],
+                above: raw.above.voxels[v],
                 weight: weight(i),
             }
         };
@@ -90,7 +92,7 @@ pub fn encode(raw: &Raw<'_>) -> ShellStack {
             |f: &(dyn Fn(usize) -> Image8 + Sync)| (0..pyramids.len()).into_par_iter().map(f).collect::<Vec<_>>();
         let hair = pyramids[1..].iter().flat_map(|pyramid| &pyramid[mip]);
         let scale = hair.map(|t| t.extinction).fold(f32::MIN_POSITIVE, f32::max);
-        stack.gains.push([1.0; 9]);
+        stack.gains.push(vec![[1.0; 9]; pyramids.len()]);
         stack.extinction_scales_per_m.push(scale);
         stack.albedo.push(level(&|layer| code_albedo(&pyramids[layer][mip], &colours[layer][mip])));
         stack.medium.push(level(&|layer| code_medium(&pyramids[layer][mip], scale)));
@@ -134,7 +136,7 @@ fn mean(four: [Texel; 4]) -> Texel {
         tangent: four.iter().map(|t| t.weight * t.tangent).sum::<Vec3>() * share,
         colour: four.iter().map(|t| t.weight * t.colour).sum::<Vec3>() * share,
         ends: four.iter().map(|t| t.weight * t.ends).sum::<f32>() * share,
-        transmittance: four.iter().map(|t| t.weight * t.transmittance).sum::<f32>() * share,
+        above: four.iter().map(|t| t.weight * t.above).sum::<f32>() * share,
         weight: 0.25 * weight,
     }
 }
@@ -168,7 +170,7 @@ fn code(texels: usize, channels: u32, pixel: impl Fn(usize) -> [u8; 4]) -> Image
 fn code_albedo(texels: &[Texel], colours: &[Vec3]) -> Image8 {
     code(texels.len(), 4, |i| {
         let c = colours[i].map(|v| srgb_from_linear(v.clamp(0.0, 1.0)));
-        [unorm8(c.x), unorm8(c.y), unorm8(c.z), unorm8(texels[i].transmittance)]
+        [unorm8(c.x), unorm8(c.y), unorm8(c.z), code_above(texels[i].above)]
     })
 }
 

@@ -1,24 +1,33 @@
-//! Gains g(θ) per mip: what makes the stack's mean transmittance that of its strands at every angle.
+//! Gains g(θ) per mip and layer: what makes the eye see as far into the stack as into its strands, at every angle.
 
 use crate::cast::Caster;
 use crate::cast::Geometry;
 use crate::cast::Rays;
 use crate::data::coat::{GAIN_ANGLES_DEG, Tile};
-use crate::data::ray::DepthRange;
 use crate::data::shell::{Incidence, Stack};
 use crate::math::{Mat3, Vec2, Vec3};
 use rayon::prelude::*;
 
 /// Azimuths at which truth and stack are compared.
 const AZIMUTHS: usize = 8;
-/// Rays along a tile's edge per direction.
-const RAYS: usize = 40;
-/// Places along a tile's edge where the stack is evaluated, per direction.
-const SPOTS: usize = 24;
+/// Rays along a tile's edge per direction, of a dense coat and of one that skin is seen through.
+const RAYS: [usize; 2] = [16, 40];
+/// Places along a tile's edge where the stack is evaluated, per direction, likewise.
+const SPOTS: [usize; 2] = [16, 24];
+/// Share of the skin that is seen through a thin coat.
+const THIN: f64 = 0.01;
 /// Bounds of a gain: outside, texels too coarse to tell are at fault, not the law.
-const BOUNDS: (f32, f32) = (0.1, 4.0);
-/// Mean transmittance below which its ratio says nothing.
+const BOUNDS: (f64, f64) = (0.1, 4.0);
+/// Least variance of what a ray passes.
 const BLACK: f64 = 2e-4;
+/// Rays that tell as much as all that are cast: many pass between the same hairs.
+const TOLD_BY: f64 = 1000.0;
+/// By how much gains differ from slab to slab, as a rule.
+const LIKE: f64 = 0.3;
+/// Optical depth without gains behind which nothing is looked at.
+const UNSEEN: f32 = 20.0;
+/// Most steps to a gain.
+const STEPS: usize = 12;
 
 /// Unit directions into the tile at `theta_deg`, evenly around.
 pub fn directions(theta_deg: f32) -> impl Iterator<Item = Vec3> {
@@ -35,70 +44,124 @@ fn along_edge(theta_deg: f32, n: usize) -> usize {
     if theta_deg == 0.0 { 3 * n } else { n }
 }
 
-/// Mean transmittance at each of [`GAIN_ANGLES_DEG`] (in the tile) of strands mapped by `skin_from_tile`, which reach
-/// up to `top_m` there.
-pub fn strand_transmittance(scene: Geometry<'_>, edge_m: f32, top_m: f32, skin_from_tile: Mat3) -> [f64; 9] {
+/// What is seen through strands mapped by `skin_from_tile`, which reach up to `top_m` there: mean transmittance at each of
+/// [`GAIN_ANGLES_DEG`] (in the tile) from outside to the bottom of each of `slabs` slabs, the lowest first.
+pub fn seen_through(scene: Geometry<'_>, edge_m: f32, top_m: f32, slabs: usize, skin_from_tile: Mat3) -> [Vec<f64>; 9] {
     let caster = Caster::new(scene);
-    let mut black = false;
-    GAIN_ANGLES_DEG.map(|theta| {
-        // Rays only get longer with the angle.
-        if black {
-            return 0.0;
+    let mean = |theta: f32, rays: usize| {
+        let mut mean = vec![0.0; slabs];
+        let around: Vec<Vec3> = directions(theta).map(|in_tile| (skin_from_tile * in_tile).normalize()).collect();
+        for &direction in &around {
+            let n = along_edge(theta, rays);
+            let rays = Rays::Tile { edge_m, top_m, direction, size: [n, n], supersampling: 1 };
+            let slab_m = top_m / slabs as f32 / -direction.z;
+            let ends_m: Vec<f32> = (1..=slabs).map(|slab| slab as f32 * slab_m).collect();
+            let through = caster.seen_through(&rays, &ends_m);
+            mean.iter_mut()
+                .zip(through.iter().rev())
+                .for_each(|(mean, through)| *mean += through / around.len() as f64);
         }
-        let each: Vec<f64> = directions(theta)
-            .map(|in_tile| (skin_from_tile * in_tile).normalize())
-            .map(|direction| {
-                let n = along_edge(theta, RAYS);
-                let rays = Rays::Tile { edge_m, top_m, direction, size: [n, n], supersampling: 1 };
-                let far_m = top_m / -direction.z;
-                caster.mean_transmittance(&rays, DepthRange { near_m: 0.0, far_m })
-            })
-            .collect();
-        let mean = each.iter().sum::<f64>() / each.len() as f64;
-        black = mean <= BLACK;
         mean
+    };
+    GAIN_ANGLES_DEG.map(|theta| {
+        let few = mean(theta, RAYS[0]);
+        if is_thin(&few) { mean(theta, RAYS[1]) } else { few }
     })
 }
 
-/// Fits the gains of every mip of `tile`, mapped by `skin_from_tile`, to the truth.
-pub fn fit(tile: &Tile, truth: &[f64; 9], skin_from_tile: Mat3) -> Vec<[f32; 9]> {
+/// Whether skin is seen through all of it: then it is worth to look closer.
+fn is_thin(through: &[f64]) -> bool {
+    through.first().is_some_and(|&skin| skin > THIN)
+}
+
+/// Fits the gains of every mip and layer of `tile`, mapped by `skin_from_tile`, to the truth. What is seen down to a slab's bottom is
+/// made right from the outermost slab on.
+pub fn fit(tile: &Tile, truth: &[Vec<f64>; 9], skin_from_tile: Mat3) -> Vec<Vec<[f32; 9]>> {
     let stack = Stack::new(tile);
-    (0..stack.mips())
-        .map(|mip| {
-            let mut gains = [1.0; 9];
-            let mut last = 1.0;
-            for (i, (&theta, &target)) in GAIN_ANGLES_DEG.iter().zip(truth).enumerate() {
-                // Where nothing passes, any gain does: keep the neighbour's, which varies slowly.
-                if target > BLACK {
-                    let depths = optical_depths(&stack, tile.shells.size >> mip, theta, skin_from_tile);
-                    last = solve(&depths, target);
-                }
-                gains[i] = last;
-            }
-            gains
-        })
-        .collect()
-}
-
-/// Ungained optical depths seen through pixels as large as a texel of the mip with `size` texels.
-fn optical_depths(stack: &Stack<'_>, size: u32, theta_deg: f32, skin_from_tile: Mat3) -> Vec<f32> {
-    let n = along_edge(theta_deg, (size as usize).clamp(8, SPOTS));
-    let seen: Vec<Incidence> = directions(theta_deg)
-        .map(|in_tile| Incidence::new((skin_from_tile * in_tile).normalize(), skin_from_tile, 1.0 / size.max(1) as f32))
-        .collect();
-    (0..n * n)
+    let angles = GAIN_ANGLES_DEG.len();
+    let fitted: Vec<Vec<f32>> = (0..stack.mips() * angles)
         .into_par_iter()
-        .flat_map_iter(|i| {
-            let uv = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32;
-            seen.iter().map(move |seen| stack.optical_depth(uv, seen)).collect::<Vec<_>>()
+        .map(|i| {
+            let (mip, angle) = (i / angles, i % angles);
+            let truth = &truth[angle];
+            let size = tile.shells.size >> mip;
+            let spots = (size as usize).clamp(8, SPOTS[usize::from(is_thin(truth))]);
+            let in_tiles = directions(GAIN_ANGLES_DEG[angle]);
+            let seen: Vec<Incidence> = in_tiles
+                .map(|d| Incidence::new((skin_from_tile * d).normalize(), skin_from_tile, 1.0 / size.max(1) as f32))
+                .collect();
+            solve(&slab_depths(&stack, &seen, along_edge(GAIN_ANGLES_DEG[angle], spots)), truth)
         })
+        .collect();
+    let of_layer = |mip: usize, slab: usize| std::array::from_fn(|angle| fitted[mip * angles + angle][slab]);
+    (0..stack.mips())
+        .map(|mip| std::iter::once([1.0; 9]).chain((0..truth[0].len()).map(|slab| of_layer(mip, slab))).collect())
         .collect()
 }
 
-/// The gain g with mean e^(−g τ) = target: the mean falls monotonically in g, so halving finds it.
-fn solve(depths: &[f32], target: f64) -> f32 {
+/// Ungained optical depths of slabs seen at `n`² places of each view: `[slab][place]`, the lowest first.
+fn slab_depths(stack: &Stack<'_>, views: &[Incidence], n: usize) -> Vec<Vec<f32>> {
+    let mut depths = vec![vec![0.0; n * n * views.len()]; stack.slabs()];
+    for (view, seen) in views.iter().enumerate() {
+        for i in 0..n * n {
+            let uv = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32;
+            let mut sum = 0.0;
+            for (layer, depth) in stack.slab_depths(uv, seen) {
+                depths[layer - 1][view * n * n + i] = depth;
+                sum += depth;
+                // Whatever the gains, nothing is seen of what lies deeper.
+                if sum > UNSEEN {
+                    break;
+                }
+            }
+        }
+    }
+    depths
+}
+
+/// Gains of slabs, with which as much is seen through all down to each as the truth says. Where next to nothing is hidden or next to
+/// nothing passes, rays cannot tell: the gain is then near that of the slab above. Last all are scaled so that as much skin is seen.
+fn solve(depths: &[Vec<f32>], truth: &[f64]) -> Vec<f32> {
+    let places = depths.first().map_or(0, Vec::len);
+    let mut through = vec![1.0_f32; places];
+    let mut sums = vec![0.0_f32; places];
+    let mut gains = vec![1.0; depths.len()];
+    let mut above = 1.0;
+    for (slab, depths) in depths.iter().enumerate().rev() {
+        let target = truth[slab];
+        let noise = (target * (1.0 - target)).max(BLACK) / TOLD_BY;
+        let mut gain: f64 = above;
+        for _ in 0..STEPS {
+            let (mut mean, mut slope) = (0.0, 0.0);
+            for (through, depth) in through.iter().zip(depths) {
+                let left = f64::from(through * libm::expf(-(gain as f32) * depth));
+                mean += left;
+                slope -= left * f64::from(*depth);
+            }
+            let [mean, slope] = [mean, slope].map(|sum| sum / places as f64);
+            // Least squares of what is seen and of the step from slab to slab.
+            let pull = slope * (mean - target) / noise + (gain - above) / (LIKE * LIKE);
+            let step = pull / (slope * slope / noise + 1.0 / (LIKE * LIKE));
+            gain = (gain - step).clamp(BOUNDS.0, BOUNDS.1);
+            if step.abs() < 1e-4 {
+                break;
+            }
+        }
+        for ((through, sum), depth) in through.iter_mut().zip(&mut sums).zip(depths) {
+            *through *= libm::expf(-(gain as f32) * depth);
+            *sum += gain as f32 * depth;
+        }
+        gains[slab] = gain as f32;
+        above = gain;
+    }
+    let scale = if is_thin(truth) { scale(&sums, truth[0]) } else { 1.0 };
+    gains.into_iter().map(|gain| gain * scale).collect()
+}
+
+/// The factor g with mean e^(−g τ) = target: the mean falls monotonically in g, so halving finds it.
+fn scale(depths: &[f32], target: f64) -> f32 {
     let mean = |g: f64| depths.iter().map(|&t| libm::exp(-g * f64::from(t))).sum::<f64>() / depths.len() as f64;
-    let (mut low, mut high) = (f64::from(BOUNDS.0), f64::from(BOUNDS.1));
+    let (mut low, mut high) = BOUNDS;
     for _ in 0..24 {
         let middle = 0.5 * (low + high);
         *(if mean(middle) > target { &mut low } else { &mut high }) = middle;

@@ -1,10 +1,10 @@
 //! Shell textures: a tile of hair in slabs, as the law of `docs/steps/shells.md` needs them.
 
+pub mod above;
 pub mod deposit;
 pub mod encode;
 pub mod ends;
 pub mod gains;
-pub mod shadow;
 pub mod undercoat;
 
 use crate::error::{Error, Result};

@@ -15,7 +15,10 @@ mod texel;
 pub use incidence::Incidence;
 pub use root::{Filled, closeness};
 pub use stack::Stack;
-pub use texel::{HairMedium, Texel, depth_of_byte, depth_of_opacity, signed, unorm};
+pub use texel::{
+    HairMedium, MOST_ABOVE, Texel, above_of, above_of_transmittance, code_above, depth_of_byte, depth_of_opacity,
+    signed, unorm,
+};
 
 use super::coat::GAIN_ANGLES_DEG;
 

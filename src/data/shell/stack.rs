@@ -1,7 +1,7 @@
 //! A stack with its texels decoded, and how it is fetched.
 
 use super::guards::MOST_TAPS;
-use super::{HairMedium, Incidence, Texel, gain_at, slab_optical_depth, unorm};
+use super::{HairMedium, Incidence, Texel, above_of, gain_at, slab_optical_depth, unorm};
 use crate::data::coat::{Sampled, ShellStack, Tile};
 use crate::data::image::linear_from_srgb;
 use crate::data::light::luminance;
@@ -36,6 +36,11 @@ impl<'a> Stack<'a> {
     /// Number of mip levels.
     pub fn mips(&self) -> usize {
         self.texels.len()
+    }
+
+    /// Number of slabs.
+    pub fn slabs(&self) -> usize {
+        self.tile.shells.layers as usize - 1
     }
 
     /// Height of one slab, m.
@@ -136,25 +141,29 @@ impl<'a> Stack<'a> {
         }
     }
 
-    /// Optical depth of the whole stack along the view ray through `uv`, without gain; layer 0, the skin, left out.
-    pub fn optical_depth(&self, uv: Vec2, seen: &Incidence) -> f32 {
-        (1..self.tile.shells.layers as usize)
-            .map(|layer| slab_optical_depth(&self.fetch(layer, uv, seen), seen, self.slab_m()))
-            .sum()
+    /// Layers and their optical depths along the view ray through `uv`, without gain, from the outermost on.
+    pub fn slab_depths(&self, uv: Vec2, seen: &Incidence) -> impl Iterator<Item = (usize, f32)> {
+        let layers = (1..self.tile.shells.layers as usize).rev();
+        layers.map(move |layer| (layer, slab_optical_depth(&self.fetch(layer, uv, seen), seen, self.slab_m())))
     }
 
-    /// Gain at the mip that the pixel asks for.
-    pub fn gain(&self, seen: &Incidence) -> f32 {
+    /// Optical depth of the whole stack along the view ray through `uv`; layer 0, the skin, left out.
+    pub fn optical_depth(&self, uv: Vec2, seen: &Incidence) -> f32 {
+        self.slab_depths(uv, seen).map(|(layer, depth)| self.gain(layer, seen) * depth).sum()
+    }
+
+    /// Gain of a layer at the mip that the pixel asks for.
+    pub fn gain(&self, layer: usize, seen: &Incidence) -> f32 {
         let level = self.level(seen.pixel);
         let theta = seen.theta_deg();
-        let at = |mip: usize| gain_at(&self.tile.shells.gains[mip.min(self.mips() - 1)], theta);
+        let at = |mip: usize| gain_at(&self.tile.shells.gains[mip.min(self.mips() - 1)][layer], theta);
         let low = at(level.floor() as usize);
         low + (at(level.floor() as usize + 1) - low) * level.fract()
     }
 
     /// Coverage of the whole stack along the view ray through `uv`.
     pub fn coverage(&self, uv: Vec2, seen: &Incidence) -> f32 {
-        -libm::expm1f(-self.gain(seen) * self.optical_depth(uv, seen))
+        -libm::expm1f(-self.optical_depth(uv, seen))
     }
 }
 
@@ -166,7 +175,7 @@ fn decode(stack: &ShellStack, mip: usize, layer: usize, linear: &[f32; 256]) -> 
         Texel {
             medium: HairMedium::decode(&medium.pixels[4 * i..4 * i + 4], stack.extinction_scales_per_m[mip]),
             ends: unorm(ends.pixels[i]),
-            brightness: luminance(straight) * unorm(colour[3]),
+            brightness: luminance(straight) * libm::expf(-above_of(colour[3])),
         }
     };
     (0..ends.pixels.len()).map(texel).collect()

@@ -2,6 +2,7 @@
 
 use super::Incidence;
 use super::guards::{LEAST_CLEAR, LEAST_DIRECTION};
+use crate::data::image::unorm8;
 use crate::math::Vec3;
 
 /// A byte that holds a number in [0, 1].
@@ -63,6 +64,25 @@ pub fn depth_of_byte(byte: u8) -> f32 {
     -libm::logf(1.0 - f32::from(byte).min(254.5) / 255.0)
 }
 
+/// Most hair area above per skin area that a byte holds: the law of light knows no deeper hair.
+pub const MOST_ABOVE: f32 = 16.0;
+
+/// Hair area above per skin area as a byte: 255 where none is, then by its root.
+pub fn code_above(above: f32) -> u8 {
+    unorm8(1.0 - (above / MOST_ABOVE).clamp(0.0, 1.0).sqrt())
+}
+
+/// The hair area above that a byte stands for.
+pub fn above_of(byte: u8) -> f32 {
+    let root = 1.0 - unorm(byte);
+    MOST_ABOVE * root * root
+}
+
+/// The same of a byte of versions 1 and 2, which hold what light at 45° comes through.
+pub fn above_of_transmittance(byte: u8) -> f32 {
+    -libm::logf(unorm(byte).max(LEAST_CLEAR))
+}
+
 /// A texel as a shader sees it after filtering.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Texel {
@@ -70,7 +90,7 @@ pub struct Texel {
     pub medium: HairMedium,
     /// End opacity 1 − e^−κ.
     pub ends: f32,
-    /// Luminance of the albedo times the transmittance to the outside: how bright the hair is under a light above it.
+    /// Luminance of the albedo times e to minus the hair area above: how bright the hair is under a light above it.
     pub brightness: f32,
 }
 

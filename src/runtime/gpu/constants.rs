@@ -2,16 +2,17 @@
 
 use crate::data::coat::GAIN_ANGLES_DEG;
 use crate::data::light::NEAREST_M;
+use crate::data::shell::MOST_ABOVE;
 use crate::data::shell::guards::{
     APART, FADE_BELOW, INVISIBLE, LEAST_AXIS, LEAST_BULK, LEAST_CLEAR, LEAST_COSINE, LEAST_DIRECTION, LEAST_EXTINCTION,
     LEAST_RISE, LEAST_UV_AREA, LEAST_VOLUME, MOST_SPREAD, MOST_TAPS,
 };
 use crate::gpu::Constant::{self, F32, F32s, U32};
 use crate::runtime::draw_list::MAX_LIGHTS;
-use crate::volume::scene::DEEPEST_HAIR;
+use crate::volume::scene::{DEEPEST_HAIR, HORIZON};
 
 /// The module `furrier::constants` of the runtime's shaders.
-pub const CONSTANTS: [Constant; 19] = [
+pub const CONSTANTS: [Constant; 21] = [
     F32("APART", APART),
     F32("PI", std::f32::consts::PI),
     F32("NEAREST_M", NEAREST_M),
@@ -22,6 +23,7 @@ pub const CONSTANTS: [Constant; 19] = [
     F32("LEAST_COSINE", LEAST_COSINE),
     F32("LEAST_RISE", LEAST_RISE),
     F32("LEAST_CLEAR", LEAST_CLEAR),
+    F32("MOST_ABOVE", MOST_ABOVE),
     F32("LEAST_EXTINCTION", LEAST_EXTINCTION),
     F32("LEAST_DIRECTION", LEAST_DIRECTION),
     F32("LEAST_AXIS", LEAST_AXIS),
@@ -31,4 +33,5 @@ pub const CONSTANTS: [Constant; 19] = [
     F32("INVISIBLE", INVISIBLE),
     F32("MOST_TAPS", MOST_TAPS),
     F32("DEEPEST_HAIR", DEEPEST_HAIR),
+    F32("HORIZON", HORIZON),
 ];

@@ -1,6 +1,7 @@
 //! Structs as the shaders read them; `tests/shaders.rs` compares names, offsets and sizes with the WGSL.
 
 use crate::data::coat::{FinEdge, LOOK, Sampled, ShellStack, Tile};
+use crate::data::shell::above_of;
 use crate::error::Result;
 use crate::gpu::light::LightItem;
 use crate::runtime::casters::Casters;
@@ -82,7 +83,7 @@ pub struct Mip {
 impl Mip {
     /// The mips of `tile`.
     pub fn of(tile: &Tile) -> Vec<Self> {
-        tile.shells.gains.iter().map(|&gains| Self { gains }).collect()
+        tile.shells.gains.iter().flatten().map(|&gains| Self { gains }).collect()
     }
 }
 
@@ -100,6 +101,14 @@ pub struct LayerLook {
     pub look: u32,
     /// Hair area per volume times diameter.
     pub crowding: f32,
+    /// Hair area of the layer per skin area, in the mean.
+    pub area: f32,
+    /// Hair area above the layer's top, in the mean.
+    pub above_top: f32,
+    /// Hair area above the layer's top over that above its middle.
+    pub top_share: f32,
+    /// Height over which the hair area above falls to 1/e, slabs.
+    pub scale_slabs: f32,
 }
 
 /// Looks of a tile's hair, and which of them each layer has.
@@ -117,16 +126,34 @@ impl LayerLook {
     /// # Errors
     /// As [`known::scattering`].
     pub fn of(tile: &Tile) -> Result<LitLayers> {
-        let Some(looks) = &tile.looks else {
-            let default = known::scattering(FibreModel::default(), &FibreParameters::default())?.packed();
-            let layers = vec![Self { look: 0, crowding: 0.0 }; tile.shells.layers as usize];
-            return Ok(LitLayers { looks: [default; 2], layers });
+        let layers = tile.shells.layers as usize;
+        let of = match &tile.looks {
+            Some(looks) => looks.of,
+            None => [known::scattering(FibreModel::default(), &FibreParameters::default())?.packed(); 2],
         };
-        let of = |&share: &f32| {
-            let look = usize::from(share > 0.5);
-            Self { look: look as u32, crowding: looks.crowding[look] }
+        let kind = |layer: usize| match &tile.looks {
+            Some(looks) => {
+                let look = usize::from(looks.undercoat_share[layer] > 0.5);
+                (look as u32, looks.crowding[look])
+            }
+            None => (0, 0.0),
         };
-        Ok(LitLayers { looks: looks.of, layers: looks.undercoat_share.iter().map(of).collect() })
+        // The coarsest mip says what lies above the middle of each layer in the mean; nothing lies above the last.
+        let coarsest = tile.shells.albedo.last().map_or(&[][..], |layers| &layers[..]);
+        let above = |layer: usize| {
+            let alpha = coarsest.get(layer).and_then(|image| image.pixels.get(3));
+            alpha.map_or(0.0, |&byte| above_of(byte))
+        };
+        let layer = |layer: usize| {
+            let (look, crowding) = kind(layer);
+            let middle = above(layer);
+            let above_top = if layer + 1 < layers { 0.5 * (middle + above(layer + 1)) } else { 0.0 };
+            let area = 2.0 * (middle - above_top);
+            let top_share = if middle > 0.0 { above_top / middle } else { 1.0 };
+            let scale_slabs = (middle / area.max(f32::MIN_POSITIVE)).clamp(0.5, layers as f32);
+            Self { look, crowding, area, above_top, top_share, scale_slabs }
+        };
+        Ok(LitLayers { looks: of, layers: (0..layers).map(layer).collect() })
     }
 }
 
@@ -163,11 +190,36 @@ pub struct CoatVertex {
     pub longest: f32,
     /// The tile's x axis on the skin.
     pub axis: [f32; 3],
-    pub(super) _pad0: f32,
+    /// Sum of the skin's principal curvatures, 1/m; outwards positive.
+    pub bend_per_m: f32,
     /// Colour and density factors.
     pub tint: [f32; 4],
     /// Where textures of the root are read: of colour, of what is painted.
     pub root: [f32; 4],
+    /// How far it is from where the coat ends, m.
+    pub away_m: f32,
+    pub(super) _pad0: [f32; 3],
+}
+
+/// Sum of the principal curvatures at each vertex: what the normal changes by along the triangles around it.
+fn bends_per_m(fur: &CoatMesh<'_>) -> Vec<f32> {
+    let mut sums = vec![[0.0_f32; 2]; fur.positions_m.len()];
+    for triangle in fur.triangles {
+        let [a, b, c] = triangle.map(|v| v as usize);
+        let edges = [b, c].map(|v| fur.positions_m[v] - fur.positions_m[a]);
+        let turns = [b, c].map(|v| fur.normals[v] - fur.normals[a]);
+        let face = edges[0].cross(edges[1]);
+        let area2 = face.length_squared();
+        if area2 > 0.0 {
+            // The trace of the map that takes edges to turns, by the edges' dual basis.
+            let duals = [edges[1].cross(face), face.cross(edges[0])];
+            let bend = (turns[0].dot(duals[0]) + turns[1].dot(duals[1])) / area2;
+            for v in [a, b, c] {
+                sums[v] = [sums[v][0] + bend * area2.sqrt(), sums[v][1] + area2.sqrt()];
+            }
+        }
+    }
+    sums.into_iter().map(|[sum, weight]| if weight > 0.0 { sum / weight } else { 0.0 }).collect()
 }
 
 /// `Paint` of `shared/coat.wgsl`.
@@ -188,8 +240,9 @@ impl PaintUniform {
 }
 
 impl CoatVertex {
-    /// The vertices of `fur`.
-    pub fn of(fur: &CoatMesh<'_>) -> Vec<Self> {
+    /// The vertices of `fur`, which are so far from where it ends, m.
+    pub fn of(fur: &CoatMesh<'_>, away_m: &[f32]) -> Vec<Self> {
+        let bends = bends_per_m(fur);
         (0..fur.positions_m.len())
             .map(|i| Self {
                 position_m: fur.positions_m[i].to_array(),
@@ -199,9 +252,11 @@ impl CoatVertex {
                 normal: fur.normals[i].to_array(),
                 longest: fur.longest.get(i).copied().unwrap_or(1.0),
                 axis: fur.axes.get(i).map_or([0.0; 3], |axis| axis.to_array()),
-                _pad0: 0.0,
+                bend_per_m: bends[i],
                 tint: fur.tint[i].to_array(),
                 root: fur.root.get(i).map_or([0.0; 4], |root| root.to_array()),
+                away_m: away_m.get(i).copied().unwrap_or(0.0),
+                _pad0: [0.0; 3],
             })
             .collect()
     }

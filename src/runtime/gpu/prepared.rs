@@ -8,6 +8,7 @@ use super::targets::Targets;
 use super::{Drawn, KeyShadow, PassCost, Renderer};
 use crate::error::{Error, Result};
 use crate::gpu::Timer;
+use crate::runtime::away_from_borders;
 use crate::runtime::draw_list::{DrawList, Frame, MAX_LIGHTS, Picture, Show};
 use crate::runtime::shadow_view::ShadowView;
 use bytemuck::Zeroable;
@@ -50,7 +51,10 @@ impl<'a> Prepared<'a> {
         let furs: Vec<_> = scene
             .furs
             .iter()
-            .filter_map(|fur| GpuFur::new(gpu, layouts, fur, renderer.tiles[fur.tile].fin_thickness_m, &textures))
+            .zip(away_from_borders(&scene.furs))
+            .filter_map(|(fur, away_m)| {
+                GpuFur::new(gpu, layouts, (fur, &away_m), renderer.tiles[fur.tile].fin_thickness_m, &textures)
+            })
             .collect();
         let geometry =
             skins.iter().map(|skin| skin.geometry_bytes).chain(furs.iter().map(|fur| fur.bytes)).sum::<u64>();

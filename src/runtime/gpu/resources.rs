@@ -128,7 +128,7 @@ pub fn bare_tile() -> Tile {
         shells: ShellStack {
             layers: 2,
             size: 1,
-            gains: vec![[1.0; 9]],
+            gains: vec![vec![[1.0; 9]; 2]],
             slopes: vec![Vec2::ZERO; 2],
             extinction_scales_per_m: vec![1.0],
             albedo: texel(4),
@@ -252,15 +252,15 @@ pub struct GpuFur {
 }
 
 impl GpuFur {
-    /// Uploads `fur`, whose textures were added; none without them. Its tile's fin texture holds hair `fin_texture_m` thick.
+    /// Uploads a coat with how far its vertices are from where it ends, m; its textures were added; none without them. Its tile's fin texture holds hair `fin_texture_m` thick.
     pub fn new(
         gpu: &Gpu,
         layouts: &Layouts,
-        fur: &CoatMesh<'_>,
+        (fur, away_m): (&CoatMesh<'_>, &[f32]),
         fin_texture_m: f32,
         textures: &Textures<'_>,
     ) -> Option<Self> {
-        let vertices = CoatVertex::of(fur);
+        let vertices = CoatVertex::of(fur, away_m);
         let fins: Vec<FinInstance> = fur.fins.iter().map(|fin| FinInstance::new(fin, fin_texture_m)).collect();
         let bytes = bytes_of(&vertices) + bytes_of(fur.triangles) + bytes_of(&fins);
         let vertices = gpu.buffer("coat vertices", &vertices, wgpu::BufferUsages::STORAGE);
