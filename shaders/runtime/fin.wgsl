@@ -1,9 +1,9 @@
 // Fins: quads on edges near the silhouette, with hair seen from the side (Lengyel et al. 2001 §2.3).
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
-#import furrier::fur_light::{slant_depth, terminator}
+#import furrier::lights::{Hair, Key, lit_by_all}
 #import furrier::shading::{past_skin, way_up}
-#import furrier::law::{HairPlace, angles_of, cos_of, lit, lit_by_sky, seen_of, worn_of}
+#import furrier::law::{cos_of, lit_by_sky, seen_of, worn_of}
 #import furrier::looks::layer_looks
 #import furrier::shadow_map::key_share
 #import furrier::constants::{INVISIBLE, LEAST_COSINE}
@@ -178,26 +178,15 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         radiance = view.ambient * lit_by_sky(which, above, eye_hair, hair_normal, eye_normal, worn, crowding);
     }
     let root_m = in.position_m - (1.0 - in.uv.y) * in.offset_m;
-    for (var i = 0u; i < view.light_count; i++) {
-        let light = light_at(view.lights[i], in.position_m);
-        let light_normal = dot(normal, light.to_light);
-        let angles = angles_of(tangent, light.to_light, to_eye);
-        var open = 1.0;
-        var depth = 0.0;
-        if i == 0u {
-            let bend_per_m = bend_along(in.bend_per_m, light_normal);
-            depth = above * cos_of(angles.sin_in) * way_up(light_normal, bend_per_m, scale_m);
-            open = key_share(i, root_m, in.position_m, normal, light.to_light);
-            open *= past_skin(light_normal, bend_per_m, (1.0 - uv.y) * upright_m);
-        } else {
-            open = terminator(light.to_light, normal);
-            depth = slant_depth(above, light.to_light, normal, tangent);
-        }
-        if open <= 0.0 {
-            continue;
-        }
-        let here = HairPlace(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, light_normal);
-        radiance += open * light.irradiance * lit(seen, angles, here, worn, crowding);
+    var key = Key(0.0, 0.0);
+    if view.light_count > 0u {
+        let to_light = light_at(view.lights[0], in.position_m).to_light;
+        let rise = dot(normal, to_light);
+        let bend_per_m = bend_along(in.bend_per_m, rise);
+        let open = past_skin(rise, bend_per_m, (1.0 - uv.y) * upright_m);
+        let depth = above * cos_of(clamp(dot(tangent, to_light), -1.0, 1.0)) * way_up(rise, bend_per_m, scale_m);
+        key = Key(depth, open * key_share(0u, root_m, in.position_m, normal, to_light));
     }
+    radiance += lit_by_all(Hair(in.position_m, tangent, normal, to_eye, above, crowding), seen, worn, key);
     return vec4(radiance * opacity, opacity);
 }

@@ -2,9 +2,9 @@
 // where the ray passes its middle.
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
-#import furrier::fur_light::{slant_depth, terminator}
+#import furrier::lights::{Hair, Key, lit_by_all}
 #import furrier::shading::{past_skin, way_up}
-#import furrier::law::{HairPlace, angles_of, lit, lit_by_sky, seen_of, worn_of}
+#import furrier::law::{lit_by_sky, seen_of, worn_of}
 #import furrier::looks::layer_looks
 #import furrier::shadow_map::key_share
 #import furrier::constants::{INVISIBLE, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
@@ -359,26 +359,14 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         radiance = view.ambient * lit_by_sky(look.look, above, dot(tangent, to_eye), hair_normal, eye_normal, worn, crowding);
     }
     let root_m = in.position_m - in.offset_m * (f32(in.layer) / f32(tile.layers - 1u));
-    for (var i = 0u; i < view.light_count; i++) {
-        let light = light_at(view.lights[i], in.position_m);
-        let light_normal = dot(normal, light.to_light);
-        let angles = angles_of(tangent, light.to_light, to_eye);
-        var open = 1.0;
-        var depth = 0.0;
-        if i == 0u {
-            let way = way_of(place, medium, light.to_light, scale_m);
-            let height_m = (f32(slab.layer) - within) * slab.slab_m;
-            depth = area * way.longer;
-            open = key_share(i, root_m, in.position_m, normal, light.to_light) * past_skin(way.rise, way.bend_per_m, height_m);
-        } else {
-            open = terminator(light.to_light, normal);
-            depth = slant_depth(above, light.to_light, normal, tangent);
-        }
-        if open <= 0.0 {
-            continue;
-        }
-        let here = HairPlace(above, depth, dot(light.to_light, to_eye), hair_normal, eye_normal, light_normal);
-        radiance += open * light.irradiance * lit(seen, angles, here, worn, crowding);
+    var key = Key(0.0, 0.0);
+    if view.light_count > 0u {
+        let to_light = light_at(view.lights[0], in.position_m).to_light;
+        let way = way_of(place, medium, to_light, scale_m);
+        let height_m = (f32(slab.layer) - within) * slab.slab_m;
+        let open = past_skin(way.rise, way.bend_per_m, height_m);
+        key = Key(area * way.longer, open * key_share(0u, root_m, in.position_m, normal, to_light));
     }
+    radiance += lit_by_all(Hair(in.position_m, tangent, normal, to_eye, above, crowding), seen, worn, key);
     return vec4(radiance * opacity, opacity);
 }

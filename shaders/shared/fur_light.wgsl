@@ -3,7 +3,6 @@
 
 #import furrier::constants::{DEEPEST_HAIR, HORIZON, PI}
 
-
 // Optical depth towards a light through a flat layer with hair area `above` per skin area.
 fn slant_depth(above: f32, to_light: vec3<f32>, normal: vec3<f32>, lean: vec3<f32>) -> f32 {
     let along = dot(to_light, lean);

@@ -16,6 +16,7 @@ pub const ELSEWHERE: &[(&str, &[&str], &str)] = &[
         "twins.rs compares pictures of planes with the law on the CPU, coat_light.rs their light with the renderer's",
     ),
     ("runtime/fin.wgsl", &["chance", "bend_along", "vertex", "fragment"], "look.rs compares pixels of a fin"),
+    ("runtime/lights.wgsl", &["lit_by_all"], "look.rs compares pixels of a fin under two lights"),
     ("runtime/skin.wgsl", &["vertex", "fragment"], "look.rs compares pixels of skin"),
     ("runtime/caster.wgsl", &["vertex"], SHADOWS),
     ("shared/shadow_map.wgsl", &["key_share"], SHADOWS),

@@ -13,7 +13,7 @@ macro_rules! source {
 }
 
 /// Modules that others import, imported ones first.
-pub const SHARED: [Source; 11] = [
+pub const SHARED: [Source; 12] = [
     Source::constants("constants", &CONSTANTS),
     Source::constants("law_constants", &LAW_CONSTANTS),
     source!("shared/look.wgsl"),
@@ -24,6 +24,7 @@ pub const SHARED: [Source; 11] = [
     source!("shared/shadow_map.wgsl"),
     source!("shared/fur_light.wgsl"),
     source!("shared/shading.wgsl"),
+    source!("runtime/lights.wgsl"),
     source!("shared/coat.wgsl"),
 ];
 /// Opaque skin.
