@@ -8,7 +8,6 @@ use furrier::coat::hair::TileHair;
 use furrier::coat::shells::ShellParameters;
 use furrier::coat::tile::{TileRecipe, bake};
 use furrier::data::coat::Tile;
-use furrier::data::ray::DepthRange;
 use furrier::data::shell::{Incidence, Stack};
 use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::groom::{Colour, Guard, Undercoat};
@@ -54,7 +53,7 @@ pub fn tile_and_truth() -> (Tile, [f64; 4]) {
     let truth = ANGLES_DEG.map(|theta| {
         let through = |direction: Vec3| {
             let rays = Rays::Tile { edge_m, top_m, direction, size: [64; 2], supersampling: 1 };
-            caster.mean_transmittance(&rays, DepthRange { near_m: 0.0, far_m: top_m / -direction.z })
+            caster.seen_through(&rays, &[top_m / -direction.z])[0]
         };
         directions(theta).map(through).sum::<f64>() / 5.0
     });

@@ -40,15 +40,6 @@ struct Met {
     steps: Vec<MediumStep>,
 }
 
-/// Where a search for crossings may end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stop {
-    /// Nothing behind the nearest opaque crossing matters.
-    NearestOpaque,
-    /// Once anything is opaque, nothing else matters.
-    AnyOpaque,
-}
-
 /// A geometry made ready for rays.
 pub struct Caster<'a> {
     geometry: Geometry<'a>,
@@ -85,36 +76,6 @@ impl<'a> Caster<'a> {
             seen.into_film(&mut film, i);
         }
         film
-    }
-
-    /// Mean transmittance over the rays of a film: quicker than [`Self::render`], since any opaque crossing will do.
-    pub fn mean_transmittance(&self, rays: &Rays<'_>, range: DepthRange) -> f64 {
-        let [width, height] = rays.size();
-        let row = |crossings: &mut Vec<Crossing>, y: usize| -> f64 {
-            let samples = (0..width).flat_map(|x| (0..rays.per_pixel()).map(move |sample| (x, sample)));
-            samples.map(|(x, sample)| f64::from(self.through(&rays.ray(x, y, sample), range, crossings))).sum()
-        };
-        let rows: Vec<f64> = (0..height).into_par_iter().map_init(Vec::new, row).collect();
-        rows.iter().sum::<f64>() / (width * height * rays.per_pixel()) as f64
-    }
-
-    fn through(&self, ray: &Ray, range: DepthRange, crossings: &mut Vec<Crossing>) -> f32 {
-        let depth = self.geometry.medium.map_or(0.0, |medium| medium.depth_along(ray, range, OPAQUE_DEPTH));
-        if depth >= OPAQUE_DEPTH {
-            return 0.0;
-        }
-        crossings.clear();
-        self.collect(ray, range, Stop::AnyOpaque, crossings);
-        if crossings.iter().any(|c| c.alpha >= 1.0) {
-            return 0.0;
-        }
-        self.sort(crossings);
-        let mut through = libm::expf(-depth);
-        let mut last = None;
-        for crossing in crossings.iter().filter(|c| !self.same_hair(&mut last, c)) {
-            through *= 1.0 - crossing.alpha;
-        }
-        through
     }
 
     /// Mean transmittance over the rays of a film up to each of the rising distances `ends_m`.
@@ -170,7 +131,7 @@ impl<'a> Caster<'a> {
             for i in 0..width * rays.per_pixel() {
                 let (x, sample) = (i / rays.per_pixel(), i % rays.per_pixel());
                 all.clear();
-                self.collect(&rays.ray(x, y, sample), range, Stop::NearestOpaque, all);
+                self.collect(&rays.ray(x, y, sample), range, all);
                 let (mut through, mut near_m) = (1.0, 0.0);
                 for (blocked, &end_m) in blocked[x * ends_m.len()..].iter_mut().zip(ends_m) {
                     let inside = all.iter().filter(|c| c.leave_m > near_m && c.depth_m <= end_m);
@@ -208,7 +169,7 @@ impl<'a> Caster<'a> {
                 range.far_m = steps.last().map_or(range.far_m, |step| step.to_m);
             }
         }
-        self.collect(ray, *range, Stop::NearestOpaque, crossings);
+        self.collect(ray, *range, crossings);
         self.sort(crossings);
     }
 
@@ -289,11 +250,11 @@ impl<'a> Caster<'a> {
         }
     }
 
-    /// All crossings up to where `stop` says.
-    fn collect(&self, ray: &Ray, range: DepthRange, stop: Stop, crossings: &mut Vec<Crossing>) {
+    /// All crossings up to the nearest that is opaque.
+    fn collect(&self, ray: &Ray, range: DepthRange, crossings: &mut Vec<Crossing>) {
         let Some((low, high)) = self.bvh.bounds() else { return };
         let Some(edge) = self.geometry.torus_m else {
-            self.collect_image(ray, range.near_m, range.far_m, stop, crossings);
+            self.collect_image(ray, range.near_m, range.far_m, crossings);
             return;
         };
         // The images of the tile that the ray passes over, nearest first.
@@ -314,26 +275,19 @@ impl<'a> Caster<'a> {
             for iy in span(1) {
                 let shift = Vec3::new(ix as f32 * edge, iy as f32 * edge, 0.0);
                 let image = Ray { origin_m: ray.origin_m - shift, direction: ray.direction };
-                far = self.collect_image(&image, range.near_m, far, stop, crossings);
-                if far < range.near_m {
-                    return;
-                }
+                far = self.collect_image(&image, range.near_m, far, crossings);
             }
         }
     }
 
     /// Adds the crossings of one image of the geometry; returns how far the ray still sees.
-    fn collect_image(&self, ray: &Ray, near_m: f32, far_m: f32, stop: Stop, crossings: &mut Vec<Crossing>) -> f32 {
+    fn collect_image(&self, ray: &Ray, near_m: f32, far_m: f32, crossings: &mut Vec<Crossing>) -> f32 {
         let upright = self.geometry.upright_from_world;
         let mut limit = far_m;
         self.bvh.traverse(upright * ray.origin_m, upright * ray.direction, near_m, far_m, |item, far| {
             let Some(crossing) = self.cross(item, ray, near_m, far) else { return far };
             crossings.push(crossing);
-            limit = match stop {
-                _ if crossing.alpha < 1.0 => far,
-                Stop::NearestOpaque => far.min(crossing.depth_m),
-                Stop::AnyOpaque => f32::NEG_INFINITY,
-            };
+            limit = if crossing.alpha < 1.0 { far } else { far.min(crossing.depth_m) };
             limit
         });
         limit
