@@ -38,6 +38,7 @@ mod metrics;
 mod older_files;
 mod one_skin;
 mod oracle;
+mod order;
 mod outputs;
 mod painted;
 mod partings;

@@ -89,6 +89,7 @@ fn above() -> Frame {
         lights: vec![],
         ambient: Vec3::ONE,
         shadow_map: false,
+        depths: false,
     }
 }
 

@@ -75,6 +75,7 @@ fn view(edge_m: f32) -> Frame {
         lights: vec![],
         ambient: Vec3::ONE,
         shadow_map: false,
+        depths: false,
     }
 }
 

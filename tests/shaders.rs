@@ -6,10 +6,11 @@ use furrier::gpu::{Source, compose};
 use furrier::hybrid::gpu::items::{InsideItem, StrandItem, TriangleItem, VertexItem, VirtualFragmentItem};
 use furrier::hybrid::gpu::kernels;
 use furrier::hybrid::gpu::layout::{BlocksUniform, SceneUniform, ViewUniform as CameraUniform};
+use furrier::runtime::Item;
 use furrier::runtime::gpu::layout::{
     CoatVertex, FinInstance, LayerLook, Mip, PaintUniform, SkinVertex, TileUniform, ViewUniform,
 };
-use furrier::runtime::gpu::pipelines::{CASTER, FIN, RESOLVE, SHARED, SHELL, SKIN};
+use furrier::runtime::gpu::pipelines::{CASTER, EDGES, FIN, RESOLVE, SHARED, SHELL, SKIN};
 use furrier::shade::fibre::FibreLobe;
 use naga::proc::Layouter;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -51,7 +52,7 @@ fn kernel(source: Source) -> Module {
 
 #[test]
 fn every_shader_is_valid() {
-    for source in [SKIN, SHELL, FIN, RESOLVE, CASTER] {
+    for source in [SKIN, SHELL, FIN, EDGES, RESOLVE, CASTER] {
         let module = module(source);
         let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
         validator.validate(&module).unwrap_or_else(|error| panic!("{}: {error:?}", source.path));
@@ -76,7 +77,7 @@ fn every_kernel_is_valid() {
 #[test]
 fn every_shader_file_is_tested() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
-    let drawn = [SKIN, SHELL, FIN, RESOLVE, CASTER];
+    let drawn = [SKIN, SHELL, FIN, EDGES, RESOLVE, CASTER];
     let all = drawn.iter().chain(&SHARED).chain(&kernels::ALL).chain(&kernels::SHARED);
     let tested: Vec<_> = all.map(|source| source.path.to_owned()).collect();
     for kind in ["runtime", "hybrid", "shared"] {
@@ -111,12 +112,25 @@ fn structs_lie_as_in_rust() {
         ),
         (&shell, "Tile", in_rust!(TileUniform { edge_m, height_m, size, layers, mips, tinted, medium_unit_per_m })),
         (&shell, "Mip", in_rust!(Mip { gains })),
-        (&shell, "LayerLook", in_rust!(LayerLook { look, crowding, area, above_top, top_share, scale_slabs })),
+        (&shell, "LayerLook", in_rust!(LayerLook { crowding, area, top_share, scale_slabs })),
         (
             &shell,
             "CoatVertex",
-            in_rust!(CoatVertex { position_m, u, offset_m, v, normal, longest, axis, bend_per_m, tint, root, away_m }),
+            in_rust!(CoatVertex {
+                position_m,
+                u,
+                offset_m,
+                v,
+                normal,
+                longest,
+                axis,
+                bend_per_m,
+                tint,
+                root,
+                outer_normal
+            }),
         ),
+        (&shell, "Item", in_rust!(Item { index, layer })),
         (&shell, "Paint", in_rust!(PaintUniform { has_colour, has_painted })),
         (&fin, "FinEdge", in_rust!(FinInstance { ends, u, thickness, spacing_m })),
     ] {

@@ -31,7 +31,7 @@ fn key(to_light: Vec3) -> Light {
 /// The ball's picture, mostly lit by the key.
 fn frame(light: Light) -> Frame {
     let view = look(Vec3::new(0.05, 0.05, 0.26), [96, 96]);
-    Frame { lights: vec![light], ambient: Vec3::splat(0.05), ..view }
+    Frame { lights: vec![light], ambient: Vec3::splat(0.05), depths: true, ..view }
 }
 
 fn drawn(scene: &DrawList<'_>, frame: &Frame) -> Drawn {

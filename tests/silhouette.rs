@@ -109,6 +109,7 @@ fn frame(camera: &Camera) -> Frame {
         lights: vec![],
         ambient: Vec3::ONE,
         shadow_map: false,
+        depths: false,
     }
 }
 

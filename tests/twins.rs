@@ -65,6 +65,7 @@ pub fn oblique(direction: Vec3, edge_m: f32) -> Frame {
         lights: vec![],
         ambient: Vec3::ZERO,
         shadow_map: false,
+        depths: false,
     }
 }
 

@@ -1,14 +1,19 @@
 // Fins: quads on edges near the silhouette, with hair seen from the side (Lengyel et al. 2001 §2.3).
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
+#import furrier::items::{items, uncovered, shadow_reads, PAINTED_READS}
 #import furrier::lights::{Hair, Key, lit_by_all}
 #import furrier::shading::{past_skin, way_up}
 #import furrier::law::{cos_of, lit_by_sky, seen_of, worn_of}
 #import furrier::looks::layer_looks
-#import furrier::shadow_map::key_share
+#import furrier::shadow_map::{HAIR_TAPS, key_share}
 #import furrier::constants::{INVISIBLE, LEAST_COSINE}
 #import furrier::coat::{CoatVertex, Paint, Root, root_of, tile, area_above, presence, thinned, closeness, at_outline, nearness, STRIPS}
 
+// Whether it is drawn, or 4 for what it costs: fragments in red, reads of texels in green.
+override MEASURE: u32 = 0u;
+// Reads of both textures of a fin, at the most.
+const FIN_READS: f32 = 8.0;
 // Texels along the edge per texel along the hair that one fetch may average.
 const MAX_STRETCH: f32 = 4.0;
 
@@ -61,7 +66,7 @@ fn chance(number: u32) -> f32 {
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Varyings {
-    let fin = fins[index / 6u];
+    let fin = fins[items[index / 6u].index];
     // Two triangles of the quad (end, height): 00 10 01, 01 10 11.
     var corners = array(vec2(0u, 0u), vec2(1u, 0u), vec2(0u, 1u), vec2(0u, 1u), vec2(1u, 0u), vec2(1u, 1u));
     let corner = corners[index % 6u];
@@ -132,15 +137,16 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let offset_m = in.offset_m * root.share;
     let near = nearness(max(abs(uv_dx.x), abs(uv_dy.x)));
     let near_outline = at_outline(in.cos_view, near);
+    let root_reads = PAINTED_READS * f32(paint.has_painted + paint.has_colour);
     if near_outline <= 0.0 {
-        return vec4(0.0);
+        return select(vec4(0.0), vec4(1.0, root_reads, 0.0, 0.0), MEASURE == 4u);
     }
     let texels = vec2(length(vec2(uv_dx.x, uv_dy.x)), length(vec2(uv_dx.y, uv_dy.y))) * size;
     let narrowed = vec2(min(1.0, MAX_STRETCH * max(texels.y, 1.0) / max(texels.x, 1e-6)), 1.0);
     let surface = textureSampleGrad(fin_albedo, fin_sampler, uv, 0, uv_dx * narrowed, uv_dy * narrowed);
     let medium = textureSampleGrad(fin_tangent, fin_sampler, uv, 0, uv_dx * narrowed, uv_dy * narrowed);
     if uv.y < 0.0 {
-        return vec4(0.0);
+        return select(vec4(0.0), vec4(1.0, root_reads + FIN_READS, 0.0, 0.0), MEASURE == 4u);
     }
     let present = tint.w * root.density * presence(offset_m);
     let stored = (medium.xyz * 255.0 - 128.0) / 127.0;
@@ -163,7 +169,10 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let amount = in.weight * near_outline * present / (spread * spread);
     // Near by, whole hairs are left out; from afar, a share of each.
     let left = mix(amount, step(chance(u32(i32(floor(in.uv.x * STRIPS)))), amount), near);
-    let opacity = thinned(surface.a, select(left, amount, amount >= 1.0));
+    let opacity = thinned(surface.a, select(left, amount, amount >= 1.0)) * uncovered(in.clip);
+    if MEASURE == 4u {
+        return vec4(1.0, root_reads + FIN_READS + 1.0 + select(0.0, shadow_reads(HAIR_TAPS), opacity >= INVISIBLE), 0.0, 0.0);
+    }
     if opacity < INVISIBLE {
         return vec4(0.0);
     }
@@ -185,7 +194,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         let bend_per_m = bend_along(in.bend_per_m, rise);
         let open = past_skin(rise, bend_per_m, (1.0 - uv.y) * upright_m);
         let depth = above * cos_of(clamp(dot(tangent, to_light), -1.0, 1.0)) * way_up(rise, bend_per_m, scale_m);
-        key = Key(depth, open * key_share(0u, root_m, in.position_m, normal, to_light));
+        key = Key(depth, open * key_share(0u, root_m, in.position_m, normal, to_light, HAIR_TAPS));
     }
     radiance += lit_by_all(Hair(in.position_m, tangent, normal, to_eye, above, crowding), seen, worn, key);
     return vec4(radiance * opacity, opacity);

@@ -1,17 +1,13 @@
-// The looks of a tile's hair, and which of them each layer has.
+// The look of the hair that is drawn, and what each layer of its tile holds.
 #define_import_path furrier::looks
 
 #import furrier::look::Look
 
 struct LayerLook {
-    // 0 guard hair, 1 undercoat.
-    look: u32,
     // Hair area per volume times diameter.
     crowding: f32,
     // Hair area of the layer per skin area, in the mean.
     area: f32,
-    // Hair area above the layer's top, in the mean.
-    above_top: f32,
     // Hair area above the layer's top over that above its middle.
     top_share: f32,
     // Height over which the hair area above falls to 1/e, slabs.

@@ -1,7 +1,9 @@
 // Many samples to one pixel: a box filter in linear light, and the nearest depth.
 
 @group(0) @binding(0) var samples: texture_2d<f32>;
-@group(0) @binding(1) var depths: texture_depth_multisampled_2d;
+@group(0) @binding(1) var depths: texture_depth_2d;
+// The skin's edges, nearest depth first.
+@group(0) @binding(2) var edges: texture_2d<f32>;
 
 // Samples along a pixel's edge.
 override SAMPLES: u32 = 2u;
@@ -21,15 +23,13 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
 @fragment
 fn fragment(@builtin(position) at: vec4<f32>) -> Pixel {
     let first = vec2<u32>(at.xy) * SAMPLES;
-    let edge_samples = textureNumSamples(depths);
     var sum = vec4(0.0);
     var nearest = 1.0;
     for (var y = 0u; y < SAMPLES; y++) {
         for (var x = 0u; x < SAMPLES; x++) {
             sum += textureLoad(samples, first + vec2(x, y), 0);
-            for (var i = 0u; i < edge_samples; i++) {
-                nearest = min(nearest, textureLoad(depths, first + vec2(x, y), i));
-            }
+            let at_sample = first + vec2(x, y);
+            nearest = min(nearest, min(textureLoad(depths, at_sample, 0), textureLoad(edges, at_sample, 0).x));
         }
     }
     return Pixel(sum / f32(SAMPLES * SAMPLES), nearest);

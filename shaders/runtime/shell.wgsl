@@ -2,33 +2,31 @@
 // where the ray passes its middle.
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
+#import furrier::items::{items, uncovered, shadow_reads, PAINTED_READS}
 #import furrier::lights::{Hair, Key, lit_by_all}
 #import furrier::shading::{past_skin, way_up}
 #import furrier::law::{lit_by_sky, seen_of, worn_of}
 #import furrier::looks::layer_looks
-#import furrier::shadow_map::key_share
+#import furrier::shadow_map::{HAIR_TAPS, key_share}
 #import furrier::constants::{INVISIBLE, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
 #import furrier::coat::{CoatVertex, Paint, Root, root_of, Filled, filled_slab, Frame, Medium, Footprint, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
     lateral, across, area_above, seen_at, depth_of_opacity, presence, path_through_slab, footprint, fetch, run_through_slab, gain, medium_of, fin_share, nearness, closeness}
 
-// Which side of the shells this pass draws: the far one first, outer to inner, then the near one, inner to outer.
-override NEAR_SIDE: bool = true;
 // Whether fins are drawn too and take their share.
 override WITH_FINS: bool = true;
 // Whether roots have textures.
 override PAINTED: bool = true;
-// What is drawn: 0 hair; 1 the mean optical depth of a slab, added up in red; 2 on the skin itself that of all slabs, as they
-// would lie over it on a plane, in green, and 1 in blue; nothing where root.x is above 0.
-override DEPTHS: u32 = 0u;
+// What is measured instead of drawn, 0 for nothing: 1 the mean optical depth of a slab, added up in red; 2 on the skin itself that of all
+// slabs, as they would lie over it on a plane, in green, and 1 in blue, nothing where root.x is above 0; 3 nothing but the near side's
+// depth, where there is hair; 4 what it costs: fragments in red, reads of texels in green.
+override MEASURE: u32 = 0u;
 // Cosines between a facet and the smooth normals at its corners: of a hard edge, and of a surface that facets stand for.
 const HARD: f32 = 0.707;
 const SOFT: f32 = 0.906;
 // Deeper is never seen through.
 const OPAQUE: f32 = 4.0;
-// Optical depth, by the mean hair area and without gains, behind which hair is not looked at.
-const UNSEEN: f32 = 10.0;
-// Cosine between normal and view below which triangles are not left out.
-const SLANTING: f32 = 0.4;
+// The one look that is bound.
+const LOOK: u32 = 0u;
 // Taps of the far side, which lies behind the near one and can do with fewer.
 const FAR_TAPS: f32 = 4.0;
 
@@ -45,15 +43,17 @@ struct Varyings {
     @location(0) position_m: vec3<f32>,
     @location(1) uv: vec2<f32>,
     @location(2) offset_m: vec3<f32>,
+    // Of the slab, which lies as the coat's outer side does the more the higher it is.
     @location(3) normal: vec3<f32>,
     @location(4) tint: vec4<f32>,
     // What one metre of the tile becomes on this triangle at this height.
     @location(5) @interpolate(flat) x_axis: vec3<f32>,
     @location(6) @interpolate(flat) y_axis: vec3<f32>,
-    // What the normal changes by along them, 1/m.
-    @location(7) @interpolate(flat) x_turn: vec3<f32>,
-    @location(8) @interpolate(flat) y_turn: vec3<f32>,
-    @location(9) @interpolate(flat) layer: u32,
+    // How the slab and the skin bend along them: what the normal changes by, of x along x, of both along each other, of y along y.
+    @location(7) @interpolate(flat) bend: vec3<f32>,
+    @location(8) @interpolate(flat) skin_bend: vec3<f32>,
+    // Layer, and 1 where it is seen from inside.
+    @location(9) @interpolate(flat) layer: vec2<u32>,
     @location(10) axis: vec3<f32>,
     // Square root of the triangle's area at this height over that on the skin; how far fins stand for the hair around them.
     @location(11) @interpolate(flat) spread: vec2<f32>,
@@ -61,40 +61,21 @@ struct Varyings {
     @location(13) longest: f32,
     // Normal of the facet, outwards, and how far it gives way to the smooth one.
     @location(14) @interpolate(flat) facet: vec4<f32>,
+    @location(15) skin_normal: vec3<f32>,
 }
 
-// Whether hair before a triangle of a layer, or the skin, surely hides it. The coat goes on around it as far as the eye's ray runs
-// through it, or what is seen of it from the side at a border would be missing.
-fn out_of_sight(a: CoatVertex, b: CoatVertex, c: CoatVertex, layer: u32, facet: vec3<f32>) -> bool {
-    let offset_m = (a.offset_m + b.offset_m + c.offset_m) / 3.0;
-    let hair_m = length(offset_m);
-    let to_eye = -ray_direction(a.position_m + offset_m);
-    let rise = dot(facet, to_eye);
-    let upright = dot(facet, offset_m);
-    let away_m = min(min(a.away_m, b.away_m), c.away_m);
-    // Beside hard edges and borders what is seen on a slant comes in from the side.
-    if hair_m <= 0.0 || abs(rise) < SLANTING || upright <= 0.05 * hair_m || away_m < 2.0 * hair_m / abs(rise) {
-        return false;
-    }
-    let height_m = upright * f32(layer) / f32(tile.layers - 1u);
-    // The stronger of both curvatures is no more than their sum, where neither is hollow.
-    let bend_per_m = 0.5 * max(max(a.bend_per_m, b.bend_per_m), max(c.bend_per_m, 0.0)) * (1.0 - rise * rise);
-    if past_skin(rise, bend_per_m, height_m) <= 0.0 {
-        return true;
-    }
-    if tile.tinted < 0.5 || paint.has_painted > 0u {
-        return false;
-    }
-    let look = layer_looks[layer];
-    let along = dot(offset_m, to_eye) / hair_m;
-    let area = look.above_top * min(min(a.tint.w, b.tint.w), c.tint.w) * hair_m / tile.height_m;
-    let scale_m = look.scale_slabs * upright / f32(tile.layers - 1u);
-    return area * sqrt(max(1.0 - along * along, 0.0)) * way_up(rise, bend_per_m, scale_m) > UNSEEN;
+// How far normals that turn so along two edges turn towards the texture's axes along them.
+fn bend_of(turns: mat2x3<f32>, uv_b: vec2<f32>, uv_c: vec2<f32>, scale: f32, axes: mat2x3<f32>) -> vec3<f32> {
+    let x_turn = (turns[0] * uv_c.y - turns[1] * uv_b.y) * scale;
+    let y_turn = (turns[1] * uv_b.x - turns[0] * uv_c.x) * scale;
+    return vec3(dot(x_turn, axes[0]), dot(x_turn, axes[1]) + dot(y_turn, axes[0]), dot(y_turn, axes[1]));
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32) -> Varyings {
-    let first = index - index % 3u;
+fn vertex(@builtin(vertex_index) index: u32) -> Varyings {
+    let item = items[index / 3u];
+    let first = 3u * item.index;
+    let layer = item.layer & 0xffffu;
     let a = vertices[indices[first]];
     let b = vertices[indices[first + 1u]];
     let c = vertices[indices[first + 2u]];
@@ -109,48 +90,38 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32
     let area = uv_b.x * uv_c.y - uv_c.x * uv_b.y;
     let scale = select(0.0, 1.0 / area, abs(area) > LEAST_UV_AREA);
 
-    let own = vertices[indices[index]];
+    let own = vertices[indices[first + index % 3u]];
     var out: Varyings;
     out.position_m = own.position_m + height * own.offset_m;
     out.uv = vec2(own.u, own.v);
     out.offset_m = own.offset_m;
-    out.normal = own.normal;
+    out.normal = mix(own.normal, own.outer_normal, height);
+    out.skin_normal = own.normal;
     out.tint = own.tint;
     out.x_axis = (edge_b * uv_c.y - edge_c * uv_b.y) * scale;
     out.y_axis = (edge_c * uv_b.x - edge_b * uv_c.x) * scale;
-    let turn_b = b.normal - a.normal;
-    let turn_c = c.normal - a.normal;
-    out.x_turn = (turn_b * uv_c.y - turn_c * uv_b.y) * scale;
-    out.y_turn = (turn_c * uv_b.x - turn_b * uv_c.x) * scale;
-    out.layer = layer;
+    let normal_a = mix(a.normal, a.outer_normal, height);
+    let normal_b = mix(b.normal, b.outer_normal, height);
+    let normal_c = mix(c.normal, c.outer_normal, height);
+    let axes = mat2x3(out.x_axis, out.y_axis);
+    out.bend = bend_of(mat2x3(normal_b - normal_a, normal_c - normal_a), uv_b, uv_c, scale, axes);
+    out.skin_bend = bend_of(mat2x3(b.normal - a.normal, c.normal - a.normal), uv_b, uv_c, scale, axes);
+    out.layer = vec2(layer, item.layer >> 16u);
     out.root = own.root;
     out.longest = own.longest;
     out.axis = own.axis;
     let foot = cross(b.position_m - a.position_m, c.position_m - a.position_m);
     let spread = clamp(sqrt(length(cross(edge_b, edge_c)) / max(length(foot), 1e-30)), 1.0 / MOST_SPREAD, MOST_SPREAD);
-
-    // Which side is seen follows from the offsets, not from the winding, so mirrored parts need no care.
     let face = cross(edge_b, edge_c);
-    let outwards = face * sign(dot(face, a.offset_m + b.offset_m + c.offset_m));
     let around = length(edge_b) + length(edge_c) + length(edge_c - edge_b);
     let close = closeness(length(own.offset_m), length(face) / max(around, 1e-20));
     out.spread = vec2(spread, close);
     // The smooth normal is right where it is near the facet's at all corners, or where facets are small.
     let plain = face / max(length(face), 1e-30);
-    let facet = select(-plain, plain, dot(plain, a.normal + b.normal + c.normal) >= 0.0);
-    let nearest = min(min(dot(facet, a.normal), dot(facet, b.normal)), dot(facet, c.normal));
+    let facet = select(-plain, plain, dot(plain, normal_a + normal_b + normal_c) >= 0.0);
+    let nearest = min(min(dot(facet, normal_a), dot(facet, normal_b)), dot(facet, normal_c));
     out.facet = vec4(facet, max(close, smoothstep(HARD, SOFT, nearest)));
-    var seen_from_outside = dot(outwards, ray_direction(at_a)) < 0.0;
-    if DEPTHS == 2u {
-        // Hair that leans behind its skin counts as missing.
-        seen_from_outside = dot(a.normal + b.normal + c.normal, ray_direction(at_a)) < 0.0;
-    }
-    let drawn = seen_from_outside == NEAR_SIDE && scale != 0.0;
-    if drawn && (DEPTHS > 0u || !out_of_sight(a, b, c, layer, facet)) {
-        out.clip = view.clip_from_world * vec4(out.position_m, 1.0);
-    } else {
-        out.clip = vec4(0.0, 0.0, -1.0, 1.0);
-    }
+    out.clip = select(vec4(0.0, 0.0, -1.0, 1.0), view.clip_from_world * vec4(out.position_m, 1.0), scale != 0.0);
     return out;
 }
 
@@ -159,20 +130,14 @@ struct Skin {
     // Metres of the texture of a direction in the world: two rows.
     x_row: vec3<f32>,
     y_row: vec3<f32>,
-    x_axis: vec3<f32>,
-    y_axis: vec3<f32>,
-    x_turn: vec3<f32>,
-    y_turn: vec3<f32>,
-    // Half of how far bends count over how much of the offset is upright.
-    half_share: f32,
+    // As `Varyings.skin_bend`, times half of how far bends count over how much of the offset is upright.
+    bend: vec3<f32>,
 }
 
-// By how much, per square of a metre along a direction with these metres of the texture, the skin bends away from it, in
+// By how much, per square of a metre along a direction with these metres of the texture, a surface bends away from it, in
 // metres of the tile.
-fn bend_along(skin: Skin, texture: vec2<f32>) -> f32 {
-    let sideways = skin.x_axis * texture.x + skin.y_axis * texture.y;
-    let turn = skin.x_turn * texture.x + skin.y_turn * texture.y;
-    return skin.half_share * dot(turn, sideways);
+fn bend_along(bend: vec3<f32>, texture: vec2<f32>) -> f32 {
+    return dot(bend, vec3(texture.x * texture.x, texture.x * texture.y, texture.y * texture.y));
 }
 
 // The way of light, or of the eye's ray, through the hair above a place.
@@ -186,13 +151,14 @@ struct Way {
 
 fn way_of(place: Place, medium: Medium, to: vec3<f32>, scale_m: f32) -> Way {
     let rise = dot(place.rise, to);
-    let bend_per_m = bend_along(place.skin, vec2(dot(place.skin.x_row, to), dot(place.skin.y_row, to)));
+    let bend_per_m = bend_along(place.skin.bend, vec2(dot(place.skin.x_row, to), dot(place.skin.y_row, to)));
     let side = across(place.at, to, medium) / max(medium.extinction, LEAST_EXTINCTION);
     return Way(side * way_up(rise, bend_per_m, scale_m), rise, bend_per_m);
 }
 
 // How a coat lies at a pixel, and how it is seen.
 struct Place {
+    // Of the skin.
     normal: vec3<f32>,
     world_ray: vec3<f32>,
     // The hair's frame.
@@ -202,7 +168,7 @@ struct Place {
     sweep: Ray,
     bend_per_m: f32,
     skin: Skin,
-    // The third row of the hair's frame: metres of the tile that a direction rises.
+    // Metres of the tile that a direction rises over the skin.
     rise: vec3<f32>,
     uv: vec2<f32>,
     uv_dx: vec2<f32>,
@@ -217,6 +183,8 @@ struct Met {
     // Where it is fetched.
     uv: vec2<f32>,
     round_level: f32,
+    // How many texels were read, as a sampler counts.
+    reads: f32,
 }
 
 fn place_of(in: Varyings, offset_m: vec3<f32>, uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> Place {
@@ -237,21 +205,23 @@ fn place_of(in: Varyings, offset_m: vec3<f32>, uv_dx: vec2<f32>, uv_dy: vec2<f32
     // The surface bends away from the ray by half its normal curvature along it, measured in metres of the tile.
     let rows = transpose(texture.tile_from_world);
     let half_share = 0.5 * in.facet.w / max(dot(normal, at.world_from_tile[2]), LEAST_RISE);
-    let skin = Skin(rows[0], rows[1], x_axis, y_axis, in.x_turn, in.y_turn, half_share);
-    let bend_per_m = bend_along(skin, sweep.direction.xy);
-    let rise = transpose(at.tile_from_world)[2];
-    return Place(normal, world_ray, at, ray, sweep, bend_per_m, skin, rise, in.uv, uv_dx, uv_dy);
+    let skin = Skin(rows[0], rows[1], in.skin_bend * half_share);
+    let bend_per_m = bend_along(in.bend * half_share, sweep.direction.xy);
+    // Light comes through hair as it does over the skin: that is how the law was solved.
+    let skin_normal = normalize(mix(in.facet.xyz, normalize(in.skin_normal), in.facet.w));
+    let rise = skin_normal / max(dot(skin_normal, up), LEAST_RISE);
+    return Place(skin_normal, world_ray, at, ray, sweep, bend_per_m, skin, rise, in.uv, uv_dx, uv_dy);
 }
 
-fn met(place: Place, slab: Filled) -> Met {
+fn met(place: Place, slab: Filled, near_side: bool) -> Met {
     let path_m = path_through_slab(place.ray, slab.slab_m, place.bend_per_m);
-    let inwards = select(-0.5, 0.5, NEAR_SIDE) * path_m;
+    let inwards = select(-0.5, 0.5, near_side) * path_m;
     let uv = place.uv + inwards * place.sweep.direction.xy / tile.edge_m;
 
     let run = run_through_slab(place.sweep, path_m, slab.slab_m, slopes[slab.layer]);
-    var spot = footprint(place.uv_dx, place.uv_dy, run, select(FAR_TAPS, MOST_TAPS, NEAR_SIDE));
+    var spot = footprint(place.uv_dx, place.uv_dy, run, select(FAR_TAPS, MOST_TAPS, near_side));
     var gain_level = footprint(place.uv_dx, place.uv_dy, vec2(0.0), MOST_TAPS).level;
-    if DEPTHS > 0u {
+    if MEASURE > 0u {
         // The mean of the tile: no gap between two hairs counts as bald.
         gain_level = f32(tile.mips - 1u);
         spot = Footprint(vec2(0.0), 1.0, gain_level, gain_level);
@@ -263,20 +233,12 @@ fn met(place: Place, slab: Filled) -> Met {
     // τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], model e of docs/steps/shells.md; g by the pixel's own mip.
     let through = path_m * lateral(place.at, place.world_ray, medium);
     let of_ends = slab.slabs * depth_of_opacity(ends) * min(1.0, path_m * place.ray.fall / max(slab.slab_m, 1e-20));
-    return Met(gain(gain_level, u32(slab.layer), place.ray.cosine) * (through + of_ends), medium, uv, spot.round_level);
-}
-
-// A fragment that shows nothing. Where depth is written it is thrown away; where none is, a program that throws none away lets the
-// skin's depth be tested before it runs.
-fn nothing() -> vec4<f32> {
-    if NEAR_SIDE {
-        discard;
-    }
-    return vec4(0.0);
+    return Met(gain(gain_level, u32(slab.layer), place.ray.cosine) * (through + of_ends), medium, uv, spot.round_level, spot.taps + 1.0);
 }
 
 @fragment
 fn fragment(in: Varyings) -> @location(0) vec4<f32> {
+    let near_side = in.layer.y == 0u;
     let uv_dx = dpdx(in.uv);
     let uv_dy = dpdy(in.uv);
     var root_dx = vec4(0.0);
@@ -290,42 +252,57 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     if PAINTED && paint.has_painted > 0u && tile.tinted > 0.5 {
         root = root_of(textureSampleGrad(painted_texture, painted_sampler, in.root.zw, 0, root_dx.zw, root_dy.zw), in.longest);
     }
-    var slab = Filled(i32(in.layer), tile.height_m / f32(tile.layers - 1u), 1.0);
+    var slab = Filled(i32(in.layer.x), tile.height_m / f32(tile.layers - 1u), 1.0);
     if PAINTED {
-        slab = filled_slab(in.layer, root.share);
+        slab = filled_slab(in.layer.x, root.share);
     }
-    if slab.slabs <= 0.0 && DEPTHS != 2u {
-        return nothing();
+    let painted_reads = select(0.0, PAINTED_READS, PAINTED && paint.has_painted > 0u && tile.tinted > 0.5);
+    if slab.slabs <= 0.0 && MEASURE == 3u {
+        discard;
+    }
+    if slab.slabs <= 0.0 && MEASURE == 4u {
+        return vec4(1.0, painted_reads, 0.0, 0.0);
+    }
+    if slab.slabs <= 0.0 && MEASURE != 2u {
+        return vec4(0.0);
     }
     let offset_m = in.offset_m * root.share;
     let place = place_of(in, offset_m, uv_dx, uv_dy);
     let present = mix(1.0, in.tint.w * root.density, tile.tinted) * presence(offset_m);
-    if DEPTHS == 2u {
+    if MEASURE == 2u {
         // Whether hair lies over skin beside a border of the coat hangs on which way it leans.
         if in.root.x > 0.0 {
             discard;
         }
         var expected = 0.0;
         for (var layer = 1u; layer < tile.layers; layer++) {
-            expected += met(place, filled_slab(layer, root.share)).depth * present;
+            expected += met(place, filled_slab(layer, root.share), true).depth * present;
         }
-        return vec4(0.0, min(expected, OPAQUE), 1.0, 0.0);
+        return uncovered(in.clip) * vec4(0.0, min(expected, OPAQUE), 1.0, 0.0);
     }
 
     let look = layer_looks[u32(slab.layer)];
     let scale_m = look.scale_slabs * slab.slab_m;
     let to_eye = -place.world_ray;
-    let found = met(place, slab);
+    let found = met(place, slab, near_side);
     let medium = found.medium;
     let near = nearness(max(length(uv_dx), length(uv_dy)));
     let kept = select(1.0, 1.0 - in.spread.y * fin_share(dot(place.normal, place.world_ray), near), WITH_FINS);
     let depth = found.depth * present * kept;
-    if DEPTHS == 1u {
+    if MEASURE == 1u {
         return vec4(min(depth, OPAQUE), 0.0, 0.0, 0.0);
     }
-    let opacity = 1.0 - exp(-depth);
-    if opacity < INVISIBLE {
-        return nothing();
+    let opacity = (1.0 - exp(-depth)) * uncovered(in.clip);
+    if MEASURE == 3u && (opacity < INVISIBLE || !near_side) {
+        discard;
+    }
+    if MEASURE == 4u {
+        let coloured = PAINTED && paint.has_colour > 0u && tile.tinted > 0.5;
+        let of_light = 1.0 + select(0.0, PAINTED_READS, coloured) + shadow_reads(HAIR_TAPS);
+        return vec4(1.0, painted_reads + found.reads + 1.0 + select(0.0, of_light, opacity >= INVISIBLE), 0.0, 0.0);
+    }
+    if MEASURE == 3u || opacity < INVISIBLE {
+        return vec4(0.0);
     }
     let surface = textureSampleLevel(albedo_texture, hair_sampler, found.uv, slab.layer, found.round_level);
     var tint = vec3(1.0);
@@ -340,32 +317,32 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
 
     // m, where there is enough hair for eight bits to tell.
     let tangent = normalize(at.world_from_tile * (medium.tangent + vec3(0.0, 0.0, LEAST_EXTINCTION)));
-    let worn = worn_of(look.look, surface.rgb * tint);
+    let worn = worn_of(LOOK, surface.rgb * tint);
     let hair_normal = dot(tangent, normal);
     let eye_normal = dot(to_eye, normal);
     // Less lies above what is seen of a slab than above its middle.
     var from_middle = 1.0;
     var within = 0.5;
-    if NEAR_SIDE {
+    if near_side {
         within = seen_at(look.area * present * way_of(place, medium, to_eye, scale_m).longer);
         from_middle = mix(look.top_share, 1.0, 2.0 * within);
     }
     let area = area_above(surface.a) * present * from_middle;
     let above = area * length(at.world_from_tile[2]);
     let crowding = look.crowding * present;
-    let seen = seen_of(look.look, above, dot(tangent, to_eye), hair_normal, eye_normal);
+    let seen = seen_of(LOOK, above, dot(tangent, to_eye), hair_normal, eye_normal);
     var radiance = vec3(0.0);
     if any(view.ambient != vec3(0.0)) {
-        radiance = view.ambient * lit_by_sky(look.look, above, dot(tangent, to_eye), hair_normal, eye_normal, worn, crowding);
+        radiance = view.ambient * lit_by_sky(LOOK, above, dot(tangent, to_eye), hair_normal, eye_normal, worn, crowding);
     }
-    let root_m = in.position_m - in.offset_m * (f32(in.layer) / f32(tile.layers - 1u));
+    let root_m = in.position_m - in.offset_m * (f32(in.layer.x) / f32(tile.layers - 1u));
     var key = Key(0.0, 0.0);
     if view.light_count > 0u {
         let to_light = light_at(view.lights[0], in.position_m).to_light;
         let way = way_of(place, medium, to_light, scale_m);
         let height_m = (f32(slab.layer) - within) * slab.slab_m;
         let open = past_skin(way.rise, way.bend_per_m, height_m);
-        key = Key(area * way.longer, open * key_share(0u, root_m, in.position_m, normal, to_light));
+        key = Key(area * way.longer, open * key_share(0u, root_m, in.position_m, normal, to_light, HAIR_TAPS));
     }
     radiance += lit_by_all(Hair(in.position_m, tangent, normal, to_eye, above, crowding), seen, worn, key);
     return vec4(radiance * opacity, opacity);

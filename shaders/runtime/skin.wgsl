@@ -2,7 +2,8 @@
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
 #import furrier::shading::skin_radiance
-#import furrier::shadow_map::key_share
+#import furrier::items::shadow_reads
+#import furrier::shadow_map::{SKIN_TAPS, key_share}
 #import furrier::constants::{FADE_BELOW, LEAST_COSINE}
 #import furrier::coat::{hair_sampler, albedo_texture, area_above}
 
@@ -37,6 +38,10 @@ fn vertex(
     return Varyings(clip, position_m, normal, colour, uv, coat_uv, coat_density, painted_uv);
 }
 
+// Whether it is drawn, or 4 for what it costs: fragments in red, reads of texels in green.
+override MEASURE: u32 = 0u;
+// Reads of the tile, of what is painted and of the base colour, at the most that their samplers do.
+const READS: f32 = 21.0;
 // Skin that is seen lies at a border or in a parting, where light finds the way that the eye found.
 const DEEPEST_SKIN: f32 = 1.5;
 
@@ -46,6 +51,9 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let cover = textureSample(albedo_texture, hair_sampler, in.coat_uv, 0);
     // Density in red, length in green; white where nothing is painted.
     let painted = textureSample(painted_texture, painted_sampler, in.painted_uv, 0);
+    if MEASURE == 4u {
+        return vec4(1.0, READS + shadow_reads(SKIN_TAPS), 0.0, 0.0);
+    }
     let furred = smoothstep(0.0, FADE_BELOW, painted.g) * select(0.0, 1.0, in.coat_density > 0.0);
     let base = in.colour * textureSample(base_texture, base_sampler, in.uv, 0).rgb;
     let albedo = base * mix(vec3(1.0), cover.rgb, furred);
@@ -62,7 +70,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         // Upright hair of which 45 degrees is the stored case: tan θ.
         let slope = sqrt(max(0.0, 1.0 - cos_light * cos_light)) / max(abs(cos_light), LEAST_COSINE);
         let shadow = exp(-outside_depth * max(slope, 0.3));
-        let reaching = light.irradiance * key_share(i, in.position_m, in.position_m, turned, light.to_light);
+        let reaching = light.irradiance * key_share(i, in.position_m, in.position_m, turned, light.to_light, SKIN_TAPS);
         radiance += reaching * shadow * skin_radiance(albedo, normal, -world_ray, light.to_light, gloss);
     }
     return vec4(radiance, 1.0);

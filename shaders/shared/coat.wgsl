@@ -2,7 +2,7 @@
 #define_import_path furrier::coat
 
 #import furrier::constants::{APART, FADE_BELOW, GAIN_ANGLES_DEG, LEAST_AXIS, LEAST_BULK, LEAST_CLEAR, LEAST_COSINE, LEAST_DIRECTION,
-    LEAST_EXTINCTION, LEAST_VOLUME, MOST_ABOVE, PI}
+    LEAST_EXTINCTION, LEAST_VOLUME, MOST_ABOVE, OUTLINE, PI, TOLD_APART}
 
 struct Tile {
     // Length that one unit of UV stands for, m.
@@ -43,8 +43,8 @@ struct CoatVertex {
     tint: vec4<f32>,
     // Where textures of the root are read: of colour in xy, of what is painted in zw.
     root: vec4<f32>,
-    // How far it is from where the coat ends, m.
-    away_m: f32,
+    // Normal of the coat's outer side.
+    outer_normal: vec3<f32>,
 }
 
 // Which textures of the root there are, 0 or 1 each.
@@ -53,13 +53,8 @@ struct Paint {
     has_painted: u32,
 }
 
-// Cosines between normal and view up to which fins stand for their share of hair, from afar and near by; from twice as much on they stand
-// for none.
-const OUTLINE: vec2<f32> = vec2(0.16, 0.5);
 // Strips of hair along a tile's edge that are told apart near by.
 const STRIPS: f32 = 128.0;
-// Pixels along a tile's edge from which on they are.
-const TOLD_APART: f32 = 24.0;
 
 @group(1) @binding(0) var<uniform> tile: Tile;
 // Per layer: mean slope of the hair, (dx, dy)/dz in tile axes.
@@ -265,23 +260,26 @@ fn run_through_slab(ray: Ray, path_m: f32, slab_m: f32, slope: vec2<f32>) -> vec
     return (sign(ray.direction.z) * path_m * ray.direction.xy - slab_m * slope) / tile.edge_m;
 }
 
-fn gain_of_mip(mip: u32, layer: u32, degrees: f32) -> f32 {
-    let row = mip * tile.layers + layer;
-    var angles = GAIN_ANGLES_DEG;
-    for (var i = 1u; i < 9u; i++) {
-        if degrees <= angles[i] {
-            return mix(mips[row].gains[i - 1u], mips[row].gains[i], (degrees - angles[i - 1u]) / (angles[i] - angles[i - 1u]));
-        }
-    }
-    return mips[row].gains[8];
-}
-
 // g(θ) of a layer at a level between two mips.
 fn gain(level: f32, layer: u32, cosine: f32) -> f32 {
-    let degrees = acos(clamp(cosine, 0.0, 1.0)) * (180.0 / PI);
+    let degrees = clamp(acos(clamp(cosine, 0.0, 1.0)) * (180.0 / PI), GAIN_ANGLES_DEG[0], GAIN_ANGLES_DEG[8]);
+    var next = 1u;
+    var low = GAIN_ANGLES_DEG[0];
+    var high = GAIN_ANGLES_DEG[1];
+    // Unrolled by the compiler, as the list is constant: no loads but those of the gains.
+    for (var i = 2u; i < 9u; i++) {
+        if degrees > GAIN_ANGLES_DEG[i - 1u] {
+            next = i;
+            low = GAIN_ANGLES_DEG[i - 1u];
+            high = GAIN_ANGLES_DEG[i];
+        }
+    }
+    let share = (degrees - low) / (high - low);
     let mip = u32(level);
-    let next = min(mip + 1u, tile.mips - 1u);
-    return mix(gain_of_mip(mip, layer, degrees), gain_of_mip(next, layer, degrees), fract(level));
+    let fine = mip * tile.layers + layer;
+    let coarse = min(mip + 1u, tile.mips - 1u) * tile.layers + layer;
+    let of_fine = mix(mips[fine].gains[next - 1u], mips[fine].gains[next], share);
+    return mix(of_fine, mix(mips[coarse].gains[next - 1u], mips[coarse].gains[next], share), fract(level));
 }
 
 // Share of the coat that fins carry where the skin's normal is at this cosine to the view: the mean of Lengyel's weight
@@ -299,7 +297,7 @@ fn fin_share(cos_view: f32, near: f32) -> f32 {
 // How far fins stand for hair where the skin's normal is at this cosine to the view. They lie behind all near shells and in no order, so
 // from afar shells are all of the coat but at the outline; near by shells are smooth, and fins show single hairs.
 fn at_outline(cos_view: f32, near: f32) -> f32 {
-    let edge = mix(OUTLINE.x, OUTLINE.y, near);
+    let edge = mix(OUTLINE[0], OUTLINE[1], near);
     return 1.0 - smoothstep(edge, 2.0 * edge, abs(cos_view));
 }
 

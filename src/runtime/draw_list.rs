@@ -119,6 +119,8 @@ pub struct Frame {
     pub ambient: Vec3,
     /// Whether the key light, the first, casts the shadow of one limb on another.
     pub shadow_map: bool,
+    /// Whether the picture's depths are those of the nearest hair too, which takes a further pass; else of the skin alone.
+    pub depths: bool,
 }
 
 impl Frame {
@@ -157,8 +159,7 @@ pub struct Picture {
     pub size: [u32; 2],
     /// Radiance and coverage, rows from the top.
     pub pixels: Vec<[f32; 4]>,
-    /// Distance along the ray to the nearest surface that writes depth (skin, near shells where they have hair), m; 0 where
-    /// there is none.
+    /// Distance along the ray to the nearest skin or, where [`Frame::depths`] asked for it, hair of a shell, m; 0 where there is none.
     pub depth_m: Vec<f32>,
 }
 

@@ -4,13 +4,19 @@
 //! all poses share, [`gpu::Renderer::prepare`] uploads one, [`gpu::Prepared::draw`] draws it. The law of opacity at one pixel, in
 //! plain steps, is [`crate::data::shell`].
 
+mod bends;
 mod borders;
 mod casters;
 mod draw_list;
 pub mod gpu;
+mod order;
 mod shadow_view;
+mod sight;
 
+pub use bends::{bends_per_m, outer_edge_m, outer_normals};
 pub use borders::away_from_borders;
 pub use casters::{Bounds, Casters};
 pub use draw_list::{CoatMesh, DrawList, Frame, MAX_LIGHTS, Picture, Show, SkinMesh};
+pub use order::{Item, Order, Run};
 pub use shadow_view::{ShadowView, TEXELS};
+pub use sight::{Before, Eye, OUTLINE, Point, Seen, Sighted, TOLD_APART};

@@ -95,6 +95,7 @@ pub fn groups(gpu: &Gpu, tile: &Tile) -> [Group<'static>; 2] {
         lights: vec![],
         ambient: Vec3::ZERO,
         shadow_map: false,
+        depths: false,
     };
     let slopes = vec![[0.0_f32; 2]; tile.shells.layers as usize];
     let tables = vec![

@@ -12,7 +12,7 @@ use std::path::Path;
 pub const ELSEWHERE: &[(&str, &[&str], &str)] = &[
     (
         "runtime/shell.wgsl",
-        &["bend_along", "way_of", "out_of_sight", "vertex", "place_of", "met", "nothing", "fragment"],
+        &["bend_of", "bend_along", "way_of", "vertex", "place_of", "met", "fragment"],
         "twins.rs compares pictures of planes with the law on the CPU, coat_light.rs their light with the renderer's",
     ),
     ("runtime/fin.wgsl", &["chance", "bend_along", "vertex", "fragment"], "look.rs compares pixels of a fin"),
@@ -20,6 +20,8 @@ pub const ELSEWHERE: &[(&str, &[&str], &str)] = &[
     ("runtime/skin.wgsl", &["vertex", "fragment"], "look.rs compares pixels of skin"),
     ("runtime/caster.wgsl", &["vertex"], SHADOWS),
     ("shared/shadow_map.wgsl", &["key_share"], SHADOWS),
+    ("runtime/items.wgsl", &["uncovered", "shadow_reads"], EDGES),
+    ("runtime/edges.wgsl", &["vertex", "fragment"], EDGES),
     ("runtime/resolve.wgsl", &["vertex", "fragment"], "a mean of samples: all tests of the runtime look through it"),
     ("shared/coat.wgsl", &["fetch"], "samples a texture: twins.rs compares it between texels and mips"),
     (
@@ -63,6 +65,7 @@ pub const ELSEWHERE: &[(&str, &[&str], &str)] = &[
 ];
 
 const SHADOWS: &str = "draws and samples the shadow map: shadow_map.rs looks for it in pictures, place by place";
+const EDGES: &str = "finds and reads the skin's edges: runtime.rs looks at a bare edge before fur, and counts reads";
 const WALKS: &str = "walks the volume as it lies on the device: hybrid_twins.rs compares the pictures pixel by pixel";
 const LISTS: &str = "makes and reads lists of a picture's pixels: hybrid_twins.rs compares the pictures pixel by pixel";
 const COLOURS: &str = "reads what other passes wrote: hybrid_twins.rs compares every layer of the pictures";

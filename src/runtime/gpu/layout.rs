@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::gpu::light::LightItem;
 use crate::runtime::casters::Casters;
 use crate::runtime::draw_list::{CoatMesh, Frame, MAX_LIGHTS, SkinMesh};
+use crate::runtime::outer_normals;
 use crate::runtime::shadow_view::ShadowView;
 use crate::shade::fibre::{FibreModel, FibreParameters};
 use crate::shade::law::known;
@@ -97,14 +98,10 @@ pub fn medium_unit_per_m(shells: &ShellStack) -> f32 {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct LayerLook {
-    /// Number of its look: 0 guard hair, 1 undercoat.
-    pub look: u32,
     /// Hair area per volume times diameter.
     pub crowding: f32,
     /// Hair area of the layer per skin area, in the mean.
     pub area: f32,
-    /// Hair area above the layer's top, in the mean.
-    pub above_top: f32,
     /// Hair area above the layer's top over that above its middle.
     pub top_share: f32,
     /// Height over which the hair area above falls to 1/e, slabs.
@@ -115,6 +112,8 @@ pub struct LayerLook {
 pub struct LitLayers {
     /// `Look` of `shared/look.wgsl`.
     pub looks: [[[f32; 4]; LOOK]; 2],
+    /// Which of them each layer has: 0 guard hair, 1 undercoat.
+    pub kinds: Vec<usize>,
     /// One per layer.
     pub layers: Vec<LayerLook>,
 }
@@ -134,7 +133,7 @@ impl LayerLook {
         let kind = |layer: usize| match &tile.looks {
             Some(looks) => {
                 let look = usize::from(looks.undercoat_share[layer] > 0.5);
-                (look as u32, looks.crowding[look])
+                (look, looks.crowding[look])
             }
             None => (0, 0.0),
         };
@@ -145,15 +144,19 @@ impl LayerLook {
             alpha.map_or(0.0, |&byte| above_of(byte))
         };
         let layer = |layer: usize| {
-            let (look, crowding) = kind(layer);
+            let crowding = kind(layer).1;
             let middle = above(layer);
             let above_top = if layer + 1 < layers { 0.5 * (middle + above(layer + 1)) } else { 0.0 };
             let area = 2.0 * (middle - above_top);
             let top_share = if middle > 0.0 { above_top / middle } else { 1.0 };
             let scale_slabs = (middle / area.max(f32::MIN_POSITIVE)).clamp(0.5, layers as f32);
-            Self { look, crowding, area, above_top, top_share, scale_slabs }
+            Self { crowding, area, top_share, scale_slabs }
         };
-        Ok(LitLayers { looks: of, layers: (0..layers).map(layer).collect() })
+        Ok(LitLayers {
+            looks: of,
+            kinds: (0..layers).map(|layer| kind(layer).0).collect(),
+            layers: (0..layers).map(layer).collect(),
+        })
     }
 }
 
@@ -196,30 +199,9 @@ pub struct CoatVertex {
     pub tint: [f32; 4],
     /// Where textures of the root are read: of colour, of what is painted.
     pub root: [f32; 4],
-    /// How far it is from where the coat ends, m.
-    pub away_m: f32,
-    pub(super) _pad0: [f32; 3],
-}
-
-/// Sum of the principal curvatures at each vertex: what the normal changes by along the triangles around it.
-fn bends_per_m(fur: &CoatMesh<'_>) -> Vec<f32> {
-    let mut sums = vec![[0.0_f32; 2]; fur.positions_m.len()];
-    for triangle in fur.triangles {
-        let [a, b, c] = triangle.map(|v| v as usize);
-        let edges = [b, c].map(|v| fur.positions_m[v] - fur.positions_m[a]);
-        let turns = [b, c].map(|v| fur.normals[v] - fur.normals[a]);
-        let face = edges[0].cross(edges[1]);
-        let area2 = face.length_squared();
-        if area2 > 0.0 {
-            // The trace of the map that takes edges to turns, by the edges' dual basis.
-            let duals = [edges[1].cross(face), face.cross(edges[0])];
-            let bend = (turns[0].dot(duals[0]) + turns[1].dot(duals[1])) / area2;
-            for v in [a, b, c] {
-                sums[v] = [sums[v][0] + bend * area2.sqrt(), sums[v][1] + area2.sqrt()];
-            }
-        }
-    }
-    sums.into_iter().map(|[sum, weight]| if weight > 0.0 { sum / weight } else { 0.0 }).collect()
+    /// Normal of the coat's outer side.
+    pub outer_normal: [f32; 3],
+    pub(super) _pad0: f32,
 }
 
 /// `Paint` of `shared/coat.wgsl`.
@@ -240,9 +222,9 @@ impl PaintUniform {
 }
 
 impl CoatVertex {
-    /// The vertices of `fur`, which are so far from where it ends, m.
-    pub fn of(fur: &CoatMesh<'_>, away_m: &[f32]) -> Vec<Self> {
-        let bends = bends_per_m(fur);
+    /// The vertices of `fur`, whose skin bends so, 1/m.
+    pub fn of(fur: &CoatMesh<'_>, bends_per_m: &[f32]) -> Vec<Self> {
+        let outer_normals = outer_normals(fur);
         (0..fur.positions_m.len())
             .map(|i| Self {
                 position_m: fur.positions_m[i].to_array(),
@@ -252,11 +234,11 @@ impl CoatVertex {
                 normal: fur.normals[i].to_array(),
                 longest: fur.longest.get(i).copied().unwrap_or(1.0),
                 axis: fur.axes.get(i).map_or([0.0; 3], |axis| axis.to_array()),
-                bend_per_m: bends[i],
+                bend_per_m: bends_per_m[i],
                 tint: fur.tint[i].to_array(),
                 root: fur.root.get(i).map_or([0.0; 4], |root| root.to_array()),
-                away_m: away_m.get(i).copied().unwrap_or(0.0),
-                _pad0: [0.0; 3],
+                outer_normal: outer_normals[i].to_array(),
+                _pad0: 0.0,
             })
             .collect()
     }

@@ -8,6 +8,7 @@
 
 mod constants;
 pub mod layout;
+mod measured;
 pub mod pipelines;
 mod prepared;
 mod resources;

@@ -1,7 +1,7 @@
 //! A pose on the device, ready to be drawn from anywhere in any light.
 
 use super::layout::ViewUniform;
-use super::pipelines::DepthPipelines;
+use super::pipelines::{CostPipelines, DepthPipelines};
 use super::resources::{self, GpuFur, GpuSkin, Textures};
 use super::shadow_map::{GpuCasters, MAP_BYTES};
 use super::targets::Targets;
@@ -9,29 +9,32 @@ use super::{Drawn, KeyShadow, PassCost, Renderer};
 use crate::error::{Error, Result};
 use crate::gpu::Timer;
 use crate::runtime::away_from_borders;
-use crate::runtime::draw_list::{DrawList, Frame, MAX_LIGHTS, Picture, Show};
+use crate::runtime::draw_list::{DrawList, Frame, MAX_LIGHTS, Show};
+use crate::runtime::order::{Item, Order};
 use crate::runtime::shadow_view::ShadowView;
+use crate::runtime::sight::Sighted;
 use bytemuck::Zeroable;
+use std::cell::OnceCell;
 
-/// The passes in the order drawn, after that of the shadow map.
-const PASSES: [&str; 4] = ["skin", "far shells", "fins", "near shells"];
+/// Passes whose time is taken: the shadow map, and these.
+const TIMED: [&str; 2] = ["skin", "coat"];
 
 /// A posed asset on the device, and what each picture of it is drawn with.
 pub struct Prepared<'a> {
-    renderer: &'a Renderer<'a>,
+    pub(super) renderer: &'a Renderer<'a>,
     skins: Vec<GpuSkin>,
     furs: Vec<GpuFur>,
     casters: GpuCasters,
     /// Of geometry and the skin's textures.
     bytes: u64,
     /// Camera and lights, written anew for each picture.
-    view: wgpu::Buffer,
-    view_group: wgpu::BindGroup,
+    pub(super) view: wgpu::Buffer,
     timer: Timer,
     /// Those of the last picture, kept for the next of the same size.
     targets: Option<Targets>,
     /// Made when first asked for.
-    depths: Option<DepthPipelines>,
+    pub(super) depths: OnceCell<DepthPipelines>,
+    pub(super) costs: OnceCell<CostPipelines>,
 }
 
 impl<'a> Prepared<'a> {
@@ -52,31 +55,23 @@ impl<'a> Prepared<'a> {
             .furs
             .iter()
             .zip(away_from_borders(&scene.furs))
-            .filter_map(|(fur, away_m)| {
-                GpuFur::new(gpu, layouts, (fur, &away_m), renderer.tiles[fur.tile].fin_thickness_m, &textures)
-            })
+            .filter_map(|(fur, away_m)| GpuFur::new(gpu, layouts, (fur, &away_m), &renderer.tiles[fur.tile], &textures))
             .collect();
         let geometry =
             skins.iter().map(|skin| skin.geometry_bytes).chain(furs.iter().map(|fur| fur.bytes)).sum::<u64>();
         let map = &renderer.shadow_map;
         let casters = GpuCasters::new(gpu, map, scene, &view);
-        let of_view = [
-            view.as_entire_binding(),
-            wgpu::BindingResource::Sampler(&map.sampler),
-            wgpu::BindingResource::TextureView(&map.view),
-        ];
-        let view_group = resources::bind(gpu, &layouts.view, &of_view);
         Ok(Self {
             renderer,
             bytes: geometry + textures.bytes + casters.bytes,
             skins,
             furs,
             casters,
-            view_group,
             view,
-            timer: Timer::new(gpu, 1 + PASSES.len() as u32),
+            timer: Timer::new(gpu, 1 + TIMED.len() as u32),
             targets: None,
-            depths: None,
+            depths: OnceCell::new(),
+            costs: OnceCell::new(),
         })
     }
 
@@ -103,24 +98,32 @@ impl<'a> Prepared<'a> {
             None => Targets::new(gpu, pipelines, view.size, *samples)?,
         };
         let key = view.lights.first().filter(|_| view.shadow_map);
-        let shadow = key.and_then(|light| ShadowView::of(light, &self.casters.extent));
+        let shadow = self.shadow(view);
         let uniform = ViewUniform::new(view, shadow.as_ref());
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&uniform));
+        let order = Order::of(&self.sighted(), view, *samples, show);
+        let group = self.view_group(&order.items, &targets);
         let mut encoder = gpu.encoder("frame");
         let casters = shadow.is_some().then_some(&self.casters);
         let mut passes = vec![self.renderer.shadow_map.draw(&mut encoder, casters, self.timer.writes(0))];
-        for (index, name) in PASSES.into_iter().enumerate() {
-            let mut pass = targets.pass(&mut encoder, name, index, self.timer.writes(1 + index as u32));
-            pass.set_bind_group(0, &self.view_group, &[]);
-            let mut cost = PassCost { name, ms: None, bytes: 0, draw_calls: 0, triangles: 0 };
-            match index {
-                0 => self.draw_skins(&mut pass, show.skin, &mut cost),
-                1 if show.shells => self.draw_shells(&mut pass, show, false, &mut cost),
-                2 if show.fins => self.draw_fins(&mut pass, &mut cost),
-                3 if show.shells => self.draw_shells(&mut pass, show, true, &mut cost),
-                _ => {}
-            }
-            passes.push(cost);
+        let mut pass = targets.skin_pass(&mut encoder, self.timer.writes(1));
+        pass.set_bind_group(0, &group, &[]);
+        let skin = if show.skin { &pipelines.skin } else { &pipelines.skin_depth };
+        passes.push(self.draw_skins(&mut pass, skin));
+        drop(pass);
+        targets.find_edges(&mut encoder, pipelines);
+        let mut pass = targets.coat_pass(&mut encoder, TIMED[1], self.timer.writes(2));
+        pass.set_bind_group(0, &group, &[]);
+        let shells = &pipelines.shells[usize::from(show.fins)];
+        let drawn =
+            |fur: &GpuFur, fins: bool| Some(if fins { &pipelines.fins } else { &shells[usize::from(fur.painted)] });
+        passes.push(self.draw_coat(&mut pass, &order, drawn));
+        drop(pass);
+        if view.depths {
+            let nearest = &self.depths.get_or_init(|| DepthPipelines::new(gpu, pipelines)).nearest;
+            let mut pass = targets.coat_pass(&mut encoder, "depths", None);
+            pass.set_bind_group(0, &group, &[]);
+            self.draw_coat(&mut pass, &order, |fur, fins| (!fins).then_some(&nearest[usize::from(fur.painted)]));
         }
         targets.resolve(&mut encoder, pipelines);
         self.timer.stop(&mut encoder);
@@ -139,51 +142,39 @@ impl<'a> Prepared<'a> {
         Ok(Drawn { picture, passes, target_bytes, shadow })
     }
 
-    /// How much hair lies over the skin, as a picture: red is the mean optical depth that all near shells have at a pixel, green
-    /// what they would have on a plane there, at most 4 (red: 4 each slab); blue is 1 where furred skin is seen and nothing before it.
-    ///
-    /// # Errors
-    /// As [`Self::draw`].
-    pub fn hair_over_skin(&mut self, view: &Frame) -> Result<Picture> {
-        let Renderer { gpu, pipelines, samples, .. } = self.renderer;
-        let targets = Targets::new(gpu, pipelines, view.size, *samples)?;
-        let depths = self.depths.take().unwrap_or_else(|| DepthPipelines::new(gpu, pipelines));
-        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view, None)));
-        let mut encoder = gpu.encoder("hair over skin");
-        for (index, name) in PASSES.into_iter().enumerate() {
-            let mut pass = targets.pass(&mut encoder, name, index, None);
-            pass.set_bind_group(0, &self.view_group, &[]);
-            let layers = |fur: &GpuFur| match index {
-                1 => 0..1,
-                _ => 1..self.renderer.tiles[fur.tile].layers,
-            };
-            match index {
-                0 => {
-                    let mut cost = PassCost { name, ms: None, bytes: 0, draw_calls: 0, triangles: 0 };
-                    self.draw_skins(&mut pass, false, &mut cost);
-                    continue;
-                }
-                1 => pass.set_pipeline(&depths.expected),
-                3 => pass.set_pipeline(&depths.slabs),
-                _ => continue,
-            }
-            for fur in self.furs.iter().filter(|fur| fur.shell_vertices > 0) {
-                pass.set_bind_group(1, &self.renderer.tiles[fur.tile].group, &[]);
-                pass.set_bind_group(2, &fur.shells, &[]);
-                pass.draw(0..fur.shell_vertices, layers(fur));
-            }
-        }
-        targets.resolve(&mut encoder, pipelines);
-        self.depths = Some(depths);
-        gpu.finish(encoder)?;
-        targets.picture(gpu, view)
+    /// The key light's map, where it is asked for and holds what it should.
+    pub(super) fn shadow(&self, view: &Frame) -> Option<ShadowView> {
+        let key = view.lights.first().filter(|_| view.shadow_map);
+        key.and_then(|light| ShadowView::of(light, &self.casters.extent))
     }
 
-    fn draw_skins(&self, pass: &mut wgpu::RenderPass<'_>, visible: bool, cost: &mut PassCost) {
-        pass.set_pipeline(if visible { &self.renderer.pipelines.skin } else { &self.renderer.pipelines.skin_depth });
+    pub(super) fn sighted(&self) -> Vec<&Sighted> {
+        self.furs.iter().map(|fur| &fur.sighted).collect()
+    }
+
+    /// Group 0 of a picture that draws `items`.
+    pub(super) fn view_group(&self, items: &[Item], targets: &Targets) -> wgpu::BindGroup {
+        let Renderer { gpu, pipelines, shadow_map, .. } = self.renderer;
+        let none = [Item::zeroed()];
+        let items = if items.is_empty() { &none } else { items };
+        let items = gpu.buffer("items", items, wgpu::BufferUsages::STORAGE);
+        let resources = [
+            self.view.as_entire_binding(),
+            wgpu::BindingResource::Sampler(&shadow_map.sampler),
+            wgpu::BindingResource::TextureView(&shadow_map.view),
+            items.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&targets.edges),
+        ];
+        resources::bind(gpu, &pipelines.layouts.view, &resources)
+    }
+
+    /// All skins by `pipeline`.
+    pub(super) fn draw_skins(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline) -> PassCost {
+        let mut cost = PassCost { name: TIMED[0], ms: None, bytes: 0, draw_calls: 0, triangles: 0 };
+        pass.set_pipeline(pipeline);
         for skin in &self.skins {
             let tile = skin.tile.map_or(&self.renderer.bare, |tile| &self.renderer.tiles[tile]);
-            pass.set_bind_group(1, &tile.group, &[]);
+            pass.set_bind_group(1, &tile.groups[0], &[]);
             pass.set_bind_group(2, &skin.material, &[]);
             pass.set_vertex_buffer(0, skin.vertices.slice(..));
             pass.set_index_buffer(skin.indices.slice(..), wgpu::IndexFormat::Uint32);
@@ -192,49 +183,34 @@ impl<'a> Prepared<'a> {
             cost.draw_calls += 1;
             cost.triangles += u64::from(skin.index_count / 3);
         }
+        cost
     }
 
-    /// One side of all shells, slab after slab over all furs, so that slabs of neighbouring parts interleave.
-    fn draw_shells(&self, pass: &mut wgpu::RenderPass<'_>, show: Show, near: bool, cost: &mut PassCost) {
-        let furs = &self.furs;
-        let pipelines = if near { &self.renderer.pipelines.near_shells } else { &self.renderer.pipelines.far_shells };
-        let pipelines = &pipelines[usize::from(show.fins)];
-        let mut set = None;
-        let most = self.renderer.tiles.iter().map(|tile| tile.layers).max().unwrap_or(0);
-        let inner_to_outer: Vec<u32> = (1..most).collect();
-        let order: Vec<u32> = if near { inner_to_outer } else { inner_to_outer.into_iter().rev().collect() };
-        let mut turn: Vec<&GpuFur> = furs.iter().collect();
-        for layer in order {
-            for i in (1..furs.len()).filter(|&i| furs[i].over_last) {
-                let pair = [&furs[i - 1], &furs[i]];
-                (turn[i - 1], turn[i]) = if layer % 2 == 0 { pair.into() } else { (pair[1], pair[0]) };
+    /// The runs of `order`, each by the pipeline that `drawn` has for its coat and for whether it is fins, if any.
+    pub(super) fn draw_coat<'p>(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        order: &Order,
+        drawn: impl Fn(&GpuFur, bool) -> Option<&'p wgpu::RenderPipeline>,
+    ) -> PassCost {
+        let mut cost = PassCost { name: TIMED[1], ms: None, bytes: self.bytes_read(), draw_calls: 0, triangles: 0 };
+        for run in &order.runs {
+            let fur = &self.furs[run.fur];
+            let tile = &self.renderer.tiles[fur.tile];
+            let Some(pipeline) = drawn(fur, run.fins) else { continue };
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(1, &tile.groups[run.look], &[]);
+            pass.set_bind_group(2, if run.fins { &fur.fins } else { &fur.shells }, &[]);
+            if run.fins {
+                pass.set_bind_group(3, &tile.fin, &[]);
             }
-            for fur in turn.iter().filter(|fur| layer < self.renderer.tiles[fur.tile].layers && fur.shell_vertices > 0)
-            {
-                if set.replace(fur.painted) != Some(fur.painted) {
-                    pass.set_pipeline(&pipelines[usize::from(fur.painted)]);
-                }
-                pass.set_bind_group(1, &self.renderer.tiles[fur.tile].group, &[]);
-                pass.set_bind_group(2, &fur.shells, &[]);
-                pass.draw(0..fur.shell_vertices, layer..layer + 1);
-                cost.draw_calls += 1;
-                cost.triangles += u64::from(fur.shell_vertices / 3);
-            }
-        }
-        cost.bytes = self.bytes_read();
-    }
-
-    fn draw_fins(&self, pass: &mut wgpu::RenderPass<'_>, cost: &mut PassCost) {
-        pass.set_pipeline(&self.renderer.pipelines.fins);
-        for fur in self.furs.iter().filter(|fur| fur.fin_vertices > 0) {
-            pass.set_bind_group(1, &self.renderer.tiles[fur.tile].group, &[]);
-            pass.set_bind_group(2, &fur.fins, &[]);
-            pass.set_bind_group(3, &self.renderer.tiles[fur.tile].fin, &[]);
-            pass.draw(0..fur.fin_vertices, 0..1);
+            // A fin has two triangles.
+            let corners = if run.fins { 6 } else { 3 };
+            pass.draw(corners * run.items.start..corners * run.items.end, 0..1);
             cost.draw_calls += 1;
-            cost.triangles += u64::from(fur.fin_vertices / 3);
+            cost.triangles += u64::from(corners / 3) * run.items.len() as u64;
         }
-        cost.bytes = self.bytes_read();
+        cost
     }
 
     fn bytes_read(&self) -> u64 {

@@ -4,7 +4,7 @@ use super::layout::{
     CoatVertex, FinInstance, LayerLook, Mip, PaintUniform, SkinVertex, TileUniform, medium_unit_per_m,
 };
 use super::pipelines::Layouts;
-use crate::data::coat::{FinTexture, Sampled, ShellStack, Tile};
+use crate::data::coat::{FinEdge, FinTexture, LOOK, Sampled, ShellStack, Tile};
 use crate::data::image::Image8;
 use crate::data::shell::{signed, unorm};
 use crate::data::texture::Wrap;
@@ -12,6 +12,8 @@ use crate::error::Result;
 use crate::gpu::{Coding, Gpu, TextureArray};
 use crate::math::Vec2;
 use crate::runtime::draw_list::{CoatMesh, SkinMesh};
+use crate::runtime::sight::{Before, Point, Sighted};
+use crate::runtime::{bends_per_m, outer_edge_m};
 
 /// Bytes of a vertex or index list.
 fn bytes_of<T>(list: &[T]) -> u64 {
@@ -51,14 +53,20 @@ fn sampler(gpu: &Gpu, wrap: [Wrap; 2], anisotropy: u16) -> wgpu::Sampler {
 
 /// A tile's textures and tables.
 pub struct GpuTile {
-    /// Group 1.
-    pub group: wgpu::BindGroup,
+    /// Group 1, with each of its looks.
+    pub groups: [wgpu::BindGroup; 2],
     /// Group 3 of fins.
     pub fin: wgpu::BindGroup,
     /// Layers, the skin counted.
     pub layers: u32,
     /// Thickness of the hair that its fin texture holds, m.
     pub fin_thickness_m: f32,
+    /// Height of the stack, m.
+    height_m: f32,
+    /// The hair before each layer; empty where its density does not stand for all of it.
+    before: Vec<Before>,
+    /// Which look each layer has.
+    looks: Vec<usize>,
     /// Texture memory.
     pub bytes: u64,
 }
@@ -85,14 +93,12 @@ impl GpuTile {
         let slopes = gpu.buffer("slopes", &slopes, wgpu::BufferUsages::STORAGE);
         let mips = gpu.buffer("mips", &Mip::of(tile), wgpu::BufferUsages::STORAGE);
         let lit = LayerLook::of(tile)?;
-        let looks = gpu.buffer("looks", &lit.looks, wgpu::BufferUsages::STORAGE);
         let layer_looks = gpu.buffer("layer looks", &lit.layers, wgpu::BufferUsages::STORAGE);
         let wrap = if tile.sampled == Sampled::Square { Wrap::Repeat } else { Wrap::Clamp };
         let hair_sampler = sampler(gpu, [wrap; 2], 1);
-        let group = bind(
-            gpu,
-            &layouts.tile,
-            &[
+        let group = |look: &[[f32; 4]; LOOK]| {
+            let look = gpu.buffer("look", look, wgpu::BufferUsages::STORAGE);
+            let resources = [
                 uniform.as_entire_binding(),
                 slopes.as_entire_binding(),
                 mips.as_entire_binding(),
@@ -100,10 +106,12 @@ impl GpuTile {
                 view(&albedo),
                 view(&medium),
                 view(&ends),
-                looks.as_entire_binding(),
+                look.as_entire_binding(),
                 layer_looks.as_entire_binding(),
-            ],
-        );
+            ];
+            bind(gpu, &layouts.tile, &resources)
+        };
+        let groups = lit.looks.each_ref().map(group);
         let fin_sampler = sampler(gpu, [Wrap::Repeat, Wrap::Clamp], 4);
         let fin = bind(
             gpu,
@@ -111,8 +119,59 @@ impl GpuTile {
             &[wgpu::BindingResource::Sampler(&fin_sampler), view(&fin_albedo), view(&fin_tangent)],
         );
         let bytes = [&albedo, &medium, &ends, &fin_albedo, &fin_tangent].iter().map(|texture| texture.bytes).sum();
-        Ok(Self { group, fin, layers: shells.layers, fin_thickness_m: tile.fin.thickness_m, bytes })
+        let before = if tile.sampled == Sampled::Square { before(tile, &lit.layers) } else { vec![] };
+        let fin_thickness_m = tile.fin.thickness_m;
+        Ok(Self {
+            groups,
+            fin,
+            layers: shells.layers,
+            fin_thickness_m,
+            height_m: tile.height_m,
+            before,
+            looks: lit.kinds,
+            bytes,
+        })
     }
+
+    /// A coat on this tile as far as sight goes, whose vertices are so far from where it ends, m, and whose skin bends so, 1/m.
+    fn sighted(&self, fur: &CoatMesh<'_>, away_m: &[f32], bends_per_m: &[f32]) -> Sighted {
+        let point = |i: usize| Point {
+            position_m: fur.positions_m[i],
+            offset_m: fur.offsets_m[i],
+            normal: fur.normals[i],
+            density: fur.tint[i].w,
+            bend_per_m: bends_per_m[i],
+            away_m: away_m[i],
+        };
+        let fin = |fin: &FinEdge| {
+            let [start, end] = fin.ends.map(|v| fur.positions_m[v as usize]);
+            (fin.ends, (fin.u[1] - fin.u[0]).abs() / start.distance(end).max(f32::MIN_POSITIVE))
+        };
+        Sighted {
+            points: (0..fur.positions_m.len()).map(point).collect(),
+            triangles: fur.triangles.to_vec(),
+            fins: fur.fins.iter().map(fin).collect(),
+            height_m: self.height_m,
+            before: if fur.painted.is_some() { vec![] } else { self.before.clone() },
+            looks: self.looks.clone(),
+            layers: self.layers,
+            edge_m: outer_edge_m(fur),
+            over_last: fur.over_last,
+        }
+    }
+}
+
+/// The hair before each layer of a tile, seen by pixels that span all of it.
+fn before(tile: &Tile, layers: &[LayerLook]) -> Vec<Before> {
+    let mut above_top = [0.0; 9];
+    let mut before: Vec<Before> = Vec::with_capacity(layers.len());
+    let gains = tile.shells.gains.last().map_or(&[][..], |gains| &gains[..]);
+    for (layer, gains) in layers.iter().zip(gains).rev() {
+        before.push(Before { above_top, scale_slabs: layer.scale_slabs });
+        above_top.iter_mut().zip(gains).for_each(|(sum, gain)| *sum += layer.area * gain);
+    }
+    before.reverse();
+    before
 }
 
 /// A tile of nothing: transmittance 1 everywhere.
@@ -237,31 +296,29 @@ pub struct GpuFur {
     pub shells: wgpu::BindGroup,
     /// Group 2 of fins.
     pub fins: wgpu::BindGroup,
-    /// Vertices of one shell.
-    pub shell_vertices: u32,
-    /// Vertices of all fins.
-    pub fin_vertices: u32,
+    /// What of it can be seen from where.
+    pub sighted: Sighted,
     /// Tile it carries.
     pub tile: usize,
     /// Whether its roots have textures.
     pub painted: bool,
-    /// Whether its shells take turns with those of the one before it.
-    pub over_last: bool,
     /// Geometry memory.
     pub bytes: u64,
 }
 
 impl GpuFur {
-    /// Uploads a coat with how far its vertices are from where it ends, m; its textures were added; none without them. Its tile's fin texture holds hair `fin_texture_m` thick.
+    /// Uploads a coat on `tile` with how far its vertices are from where it ends, m; its textures were added; none without them.
     pub fn new(
         gpu: &Gpu,
         layouts: &Layouts,
         (fur, away_m): (&CoatMesh<'_>, &[f32]),
-        fin_texture_m: f32,
+        tile: &GpuTile,
         textures: &Textures<'_>,
     ) -> Option<Self> {
-        let vertices = CoatVertex::of(fur, away_m);
-        let fins: Vec<FinInstance> = fur.fins.iter().map(|fin| FinInstance::new(fin, fin_texture_m)).collect();
+        let bends_per_m = bends_per_m(fur);
+        let sighted = tile.sighted(fur, away_m, &bends_per_m);
+        let vertices = CoatVertex::of(fur, &bends_per_m);
+        let fins: Vec<FinInstance> = fur.fins.iter().map(|fin| FinInstance::new(fin, tile.fin_thickness_m)).collect();
         let bytes = bytes_of(&vertices) + bytes_of(fur.triangles) + bytes_of(&fins);
         let vertices = gpu.buffer("coat vertices", &vertices, wgpu::BufferUsages::STORAGE);
         let indices = gpu.buffer("coat indices", fur.triangles, wgpu::BufferUsages::STORAGE);
@@ -285,11 +342,9 @@ impl GpuFur {
         Some(Self {
             shells: group(&indices),
             fins: group(&edges),
-            shell_vertices: 3 * fur.triangles.len() as u32,
-            fin_vertices: 6 * fins.len() as u32,
+            sighted,
             tile: fur.tile,
             painted: fur.colour.is_some() || fur.painted.is_some(),
-            over_last: fur.over_last,
             bytes,
         })
     }

@@ -1,6 +1,6 @@
 //! What pictures of one size are drawn into, and the way back to the host.
 
-use super::pipelines::{COLOUR, DEPTH, EDGE_SAMPLES, Pipelines, RESOLVED, RESOLVED_DEPTH};
+use super::pipelines::{COLOUR, DEPTH, EDGE, EDGE_SAMPLES, Pipelines, RESOLVED, RESOLVED_DEPTH};
 use super::resources::bind;
 use crate::error::Result;
 use crate::gpu::{Gpu, ReadBack};
@@ -9,18 +9,19 @@ use crate::runtime::draw_list::{Frame, Picture};
 /// What the picture holds before it is written, so that a pixel that never is shows.
 const POISON: wgpu::Color = wgpu::Color { r: f64::NAN, g: f64::NAN, b: f64::NAN, a: f64::NAN };
 
-/// The pass that comes last before the resolve.
-const LAST: usize = 3;
-
-/// Colour and depth at a pixel's edge samples, its shading samples, and the finished picture with its depths.
+/// The skin's colour and depth at a pixel's edge samples, all else once per shading sample, and the finished picture with its depths.
 pub(super) struct Targets {
     /// Pixels: width, height.
     pub size: [u32; 2],
     /// Memory of all, bytes.
     pub bytes: u64,
-    edges: wgpu::TextureView,
-    depth: wgpu::TextureView,
+    /// The skin's edges, for coats to read.
+    pub edges: wgpu::TextureView,
+    skin: wgpu::TextureView,
+    skin_depth: wgpu::TextureView,
+    skin_depth_group: wgpu::BindGroup,
     samples: wgpu::TextureView,
+    depth: wgpu::TextureView,
     samples_group: wgpu::BindGroup,
     picture: Finished<[f32; 4]>,
     nearest: Finished<f32>,
@@ -47,64 +48,85 @@ impl Targets {
     /// As [`Gpu::target`].
     pub fn new(gpu: &Gpu, pipelines: &Pipelines, size: [u32; 2], samples: u32) -> Result<Self> {
         let sampled = size.map(|edge| edge.saturating_mul(samples));
-        let edges = gpu.target("edge samples", sampled, EDGE_SAMPLES, COLOUR)?;
-        let depth = gpu.target("depth", sampled, EDGE_SAMPLES, DEPTH)?;
-        let shaded = gpu.target("samples", sampled, 1, COLOUR)?;
-        let [edges, depth, samples] = [&edges, &depth, &shaded].map(|texture| texture.create_view(&Default::default()));
-        let resources = [&samples, &depth].map(wgpu::BindingResource::TextureView);
-        let samples_group = bind(gpu, &pipelines.layouts.samples, &resources);
+        let target = |label, samples, format| -> Result<wgpu::TextureView> {
+            Ok(gpu.target(label, sampled, samples, format)?.create_view(&Default::default()))
+        };
+        let skin = target("skin", EDGE_SAMPLES, COLOUR)?;
+        let skin_depth = target("skin depth", EDGE_SAMPLES, DEPTH)?;
+        let edges = target("edges", 1, EDGE)?;
+        let samples = target("samples", 1, COLOUR)?;
+        let depth = target("depth", 1, DEPTH)?;
+        let resource = wgpu::BindingResource::TextureView;
+        let skin_depth_group = bind(gpu, &pipelines.layouts.depths, &[resource(&skin_depth)]);
+        let samples_group = bind(gpu, &pipelines.layouts.samples, &[&samples, &depth, &edges].map(resource));
         let area = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
-        let bytes = area(sampled) * (u64::from(EDGE_SAMPLES) * (8 + 4) + 8) + area(size) * (16 + 4);
+        let bytes = area(sampled) * (u64::from(EDGE_SAMPLES) * (8 + 4) + 8 + 8 + 4) + area(size) * (16 + 4);
         let picture = Finished::new(gpu, "picture", size, RESOLVED)?;
         let nearest = Finished::new(gpu, "nearest", size, RESOLVED_DEPTH)?;
-        Ok(Self { size, bytes, edges, depth, samples, samples_group, picture, nearest })
+        Ok(Self {
+            size,
+            bytes,
+            edges,
+            skin,
+            skin_depth,
+            skin_depth_group,
+            samples,
+            depth,
+            samples_group,
+            picture,
+            nearest,
+        })
     }
 
-    /// Begins pass number `index`: the first clears, the last turns edge samples into shading samples.
-    pub fn pass<'e>(
+    /// Begins the pass of the skin, from nothing.
+    pub fn skin_pass<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) -> wgpu::RenderPass<'e> {
+        begin(
+            encoder,
+            "skin",
+            wgpu::RenderPassColorAttachment {
+                view: &self.skin,
+                depth_slice: None,
+                resolve_target: Some(&self.samples),
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Discard,
+                },
+            },
+            (&self.skin_depth, wgpu::LoadOp::Clear(1.0)),
+            timestamp_writes,
+        )
+    }
+
+    /// Finds what the skin leaves of each pixel.
+    pub fn find_edges(&self, encoder: &mut wgpu::CommandEncoder, pipelines: &Pipelines) {
+        let edges = attachment(&self.edges, wgpu::LoadOp::Clear(wgpu::Color::BLACK));
+        let mut pass = begin(encoder, "edges", edges, (&self.depth, wgpu::LoadOp::Clear(1.0)), None);
+        pass.set_pipeline(&pipelines.edges);
+        pass.set_bind_group(0, &self.skin_depth_group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+
+    /// Begins a pass over the skin.
+    pub fn coat_pass<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
         name: &str,
-        index: usize,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> wgpu::RenderPass<'e> {
-        let clear = index == 0;
-        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(name),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.edges,
-                depth_slice: None,
-                resolve_target: (index == LAST).then_some(&self.samples),
-                ops: wgpu::Operations {
-                    load: if clear { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { wgpu::LoadOp::Load },
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.depth,
-                depth_ops: Some(wgpu::Operations {
-                    load: if clear { wgpu::LoadOp::Clear(1.0) } else { wgpu::LoadOp::Load },
-                    store: wgpu::StoreOp::Store,
-                }),
-                stencil_ops: None,
-            }),
-            timestamp_writes,
-            ..Default::default()
-        })
+        let samples = attachment(&self.samples, wgpu::LoadOp::Load);
+        begin(encoder, name, samples, (&self.depth, wgpu::LoadOp::Load), timestamp_writes)
     }
 
     /// Averages shading samples into the picture, finds the nearest depths, and copies both to where they can be read.
     pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder, pipelines: &Pipelines) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("resolve"),
-            color_attachments: &[&self.picture.view, &self.nearest.view].map(|view| {
-                Some(wgpu::RenderPassColorAttachment {
-                    view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations { load: wgpu::LoadOp::Clear(POISON), store: wgpu::StoreOp::Store },
-                })
-            }),
+            color_attachments: &[&self.picture.view, &self.nearest.view]
+                .map(|view| Some(attachment(view, wgpu::LoadOp::Clear(POISON)))),
             ..Default::default()
         });
         pass.set_pipeline(&pipelines.resolve);
@@ -124,4 +146,31 @@ impl Targets {
         let depth_m = view.distances_m(&self.nearest.read_back.texels(gpu)?);
         Ok(Picture { size: self.size, pixels, depth_m })
     }
+}
+
+/// A target that is kept.
+fn attachment(view: &wgpu::TextureView, load: wgpu::LoadOp<wgpu::Color>) -> wgpu::RenderPassColorAttachment<'_> {
+    let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+    wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
+}
+
+/// Begins a pass with one colour and depths.
+fn begin<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    name: &str,
+    colour: wgpu::RenderPassColorAttachment<'_>,
+    (depth, load): (&wgpu::TextureView, wgpu::LoadOp<f32>),
+    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+) -> wgpu::RenderPass<'e> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(name),
+        color_attachments: &[Some(colour)],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: depth,
+            depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
+            stencil_ops: None,
+        }),
+        timestamp_writes,
+        ..Default::default()
+    })
 }
