@@ -128,7 +128,7 @@ fn a_sheet_holds_every_view() {
     let (asset, coat) = creature();
     let shot = viewer::turntable(&asset, &coat, &small(), 3).unwrap();
     assert_eq!(shot.picture.size, [192, 144]);
-    assert_eq!(shot.report.counts["pictures"], 3);
+    assert_eq!(shot.report.counts["pictures"].whole(), 3);
     let cell = |x: usize, y: usize| {
         let rows = (y * 72..y * 72 + 72).flat_map(|row| (x * 96..x * 96 + 96).map(move |column| row * 192 + column));
         rows.map(|i| shot.picture.pixels[i][3]).sum::<f32>()
@@ -146,21 +146,14 @@ fn a_sheet_holds_every_view() {
 fn a_report_says_what_was_drawn() {
     let (asset, coat) = creature();
     let report = viewer::screenshot(&asset, &coat, &small()).unwrap().report;
-    for step in [
-        "open device",
-        "draw: shadow map",
-        "draw: skin",
-        "draw: far shells",
-        "draw: fins",
-        "draw: near shells",
-        "draw: develop",
-    ] {
+    for step in ["open device", "draw: shadow map", "draw: skin", "draw: coat", "draw: develop"] {
         assert!(report.steps.0.iter().any(|s| s.name == step), "{step} is missing");
     }
     let furred: u64 = coat.primitives.iter().map(|p| p.triangles.len() as u64).sum();
     let all: u64 = asset.parts.iter().map(|p| p.stored.triangles.len() as u64).sum();
-    // Skin once into the shadow map and once into the picture, three slabs from either side.
-    assert_eq!(report.counts["triangles"], 2 * all + 6 * furred);
+    // Skin once into the shadow map and once into the picture; of three slabs no more than is seen from one side.
+    let coat = report.counts["triangles"].whole() - 2 * all;
+    assert!((furred..3 * furred).contains(&coat), "{coat} triangles of {furred} in three slabs");
     assert!(!report.device.is_empty() && report.total_ms > 0.0);
 }
 

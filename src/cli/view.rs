@@ -32,8 +32,8 @@ pub struct View {
     #[arg(long, value_name = "OUT.png|exr")]
     screenshot: PathBuf,
     /// What to draw: parts of the coat; or how it lies: the hair's direction and length, the patches of its texture, or
-    /// their stretch; or where skin is bald that should not be
-    #[arg(long, value_name = "skin,shells,fins|field|patches|stretch|bald", default_value = "skin,shells,fins")]
+    /// their stretch; or where skin is bald that should not be; or how many texels each pixel reads
+    #[arg(long, value_name = "skin,shells,fins|field|patches|stretch|bald|cost", default_value = "skin,shells,fins")]
     show: String,
     #[command(flatten)]
     stage: StageArgs,
@@ -68,7 +68,8 @@ impl View {
     /// As [`viewer::screenshot`], and where an option cannot be read or a file not written.
     pub fn run(self, console: &Console) -> Result<()> {
         let format = Format::of(&self.screenshot, "--screenshot")?;
-        let options = self.options()?;
+        let options =
+            ViewOptions { depths: matches!(format, Format::Exr), count: self.report.is_some(), ..self.options()? };
         options.occluder.iter().flat_map(|thing| &thing.warnings).for_each(|line| console.warning(line));
         let occluder = self.occluder.as_ref().map(Path::new);
         let read: Vec<&Path> = [Some(self.file.as_path()), occluder].into_iter().flatten().collect();

@@ -60,6 +60,34 @@ impl Steps {
     }
 }
 
+/// How many there were of something.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Count {
+    /// In all.
+    Whole(u64),
+    /// For each of something else, in the mean.
+    Mean(f64),
+}
+
+impl Count {
+    /// In all; 0 of a mean.
+    pub fn whole(&self) -> u64 {
+        match self {
+            Self::Whole(count) => *count,
+            Self::Mean(_) => 0,
+        }
+    }
+
+    /// As a number.
+    pub fn value(&self) -> f64 {
+        match self {
+            Self::Whole(count) => *count as f64,
+            Self::Mean(mean) => *mean,
+        }
+    }
+}
+
 /// What a command did and what it cost.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
@@ -74,7 +102,7 @@ pub struct Report {
     /// What computed.
     pub device: String,
     /// Counts by name: triangles, draw calls, …
-    pub counts: BTreeMap<String, u64>,
+    pub counts: BTreeMap<String, Count>,
     /// Errors against a reference by name, where one was asked for.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub error: BTreeMap<String, f64>,
@@ -96,7 +124,8 @@ impl Report {
 
     /// Adds to a count.
     pub fn count(&mut self, name: &str, more: u64) {
-        *self.counts.entry(name.to_owned()).or_default() += more;
+        let count = self.counts.entry(name.to_owned()).or_insert(Count::Whole(0));
+        *count = Count::Whole(count.whole() + more);
     }
 }
 
@@ -129,6 +158,11 @@ impl Recorder {
     /// Adds to a count.
     pub fn count(&mut self, name: &str, more: u64) {
         self.report.count(name, more);
+    }
+
+    /// Sets how many there are for each of something, in the mean.
+    pub fn mean(&mut self, name: &str, mean: f64) {
+        self.report.counts.insert(name.to_owned(), Count::Mean(mean));
     }
 
     /// Sets an error against a reference.

@@ -2,6 +2,7 @@
 
 pub mod bald;
 pub mod chart;
+pub mod cost;
 pub mod occluder;
 pub mod sitting;
 pub mod stage;
@@ -23,6 +24,7 @@ use crate::stage::file::Format;
 use crate::stage::light::Lit;
 use crate::stage::{exr, options, png, tone};
 use bald::Baldness;
+use cost::Cost;
 use std::time::Instant;
 use subject::subject;
 
@@ -41,6 +43,10 @@ pub struct ViewOptions {
     pub samples: u32,
     /// Whether the key light casts the shadow of one limb on another; charts have none.
     pub shadow_map: bool,
+    /// Whether the report says what pictures cost, which takes a further pass.
+    pub count: bool,
+    /// Whether depths are those of hair too, which takes a further pass; else of the skin alone.
+    pub depths: bool,
     /// A thing beside the asset, in its units and axes. It is no part of what the camera is framed for.
     pub occluder: Option<Asset>,
 }
@@ -54,6 +60,8 @@ impl Default for ViewOptions {
             moment: None,
             samples: 1,
             shadow_map: true,
+            depths: false,
+            count: false,
             occluder: None,
         }
     }
@@ -68,6 +76,8 @@ pub enum Shown {
     Chart(Chart),
     /// Where hair is missing.
     Bald,
+    /// How many texels each pixel reads.
+    Cost,
 }
 
 impl Default for Shown {
@@ -104,7 +114,7 @@ impl Shot {
     }
 }
 
-/// Reads what to show: some of `skin`, `shells`, `fins`, with commas between, or one of `field`, `patches`, `stretch`, `bald` alone.
+/// Reads what to show: some of `skin`, `shells`, `fins`, with commas between, or one of `field`, `patches`, `stretch`, `bald`, `cost` alone.
 ///
 /// # Errors
 /// Names the word that is none of them, or a chart that is not alone.
@@ -114,6 +124,7 @@ pub fn parse_show(text: &str) -> Result<Shown> {
         "patches" => Some(Shown::Chart(Chart::Patches)),
         "stretch" => Some(Shown::Chart(Chart::Stretch)),
         "bald" => Some(Shown::Bald),
+        "cost" => Some(Shown::Cost),
         _ => None,
     };
     if let Some(shown) = alone(text.trim()) {
@@ -126,7 +137,7 @@ pub fn parse_show(text: &str) -> Result<Shown> {
             "shells" => show.shells = true,
             "fins" => show.fins = true,
             _ if alone(word).is_some() => {
-                return Err(Error::usage("field, patches, stretch and bald are pictures by themselves")
+                return Err(Error::usage("field, patches, stretch, bald and cost are pictures by themselves")
                     .with_parameter("show")
                     .with_found(text)
                     .with_expected(format!("{word} alone, or some of skin, shells, fins")));
@@ -136,7 +147,7 @@ pub fn parse_show(text: &str) -> Result<Shown> {
                     .with_parameter("show")
                     .with_found(word)
                     .with_expected(
-                        "skin, shells, fins, with commas between; or one of field, patches, stretch, bald",
+                        "skin, shells, fins, with commas between; or one of field, patches, stretch, bald, cost",
                     ));
             }
         }
@@ -201,7 +212,7 @@ impl Shots {
 
 fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpoint]) -> Result<Shots> {
     if options.occluder.is_some() && !matches!(options.show, Shown::Coat(_)) {
-        return Err(Error::usage("field, patches, stretch and bald are shown of the asset alone")
+        return Err(Error::usage("field, patches, stretch, bald and cost are shown of the asset alone")
             .with_parameter("occluder")
             .with_expected("some of skin, shells, fins to `show` beside it"));
     }
@@ -224,7 +235,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
     };
     let staged = || match options.show {
         Shown::Coat(show) => Ok((stage::scene(asset, coat, &textures, &pose), show, Vec::new())),
-        Shown::Bald => Ok((stage::scene(asset, coat, &textures, &pose), Show::default(), Vec::new())),
+        Shown::Bald | Shown::Cost => Ok((stage::scene(asset, coat, &textures, &pose), Show::default(), Vec::new())),
         Shown::Chart(chart) => drawing(chart),
     };
     let (mut scene, show, legend) = recorder.step("pose", staged, |_| 0)?;
@@ -253,7 +264,8 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
     } else {
         Some(recorder.step("lights", || stage.lit(&subject, &stage.camera(&subject)?), |_| 0)?)
     };
-    let mut baldness = Baldness::default();
+    let (mut baldness, mut costs) = (Baldness::default(), Cost::default());
+    let counted = options.count && matches!(options.show, Shown::Coat(_)) || options.show == Shown::Cost;
     let marked = (options.show == Shown::Bald).then(|| bald::marked(&scene));
     let mut over_skin = marked.as_ref().map(|marked| renderer.prepare(marked)).transpose()?;
     let mut pictures = Vec::with_capacity(viewpoints.len());
@@ -273,6 +285,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
         };
         let view = Frame {
             shadow_map: options.shadow_map && !charted,
+            depths: options.depths,
             ..sitting::frame(&camera, origin_m, &points_m, stage.size, lit)
         };
         recorder.row("draw: camera and light", ms_since(start), 0);
@@ -284,9 +297,28 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
             let here = Baldness::of(&hair);
             (baldness.furred, baldness.bald) = (baldness.furred + here.furred, baldness.bald + here.bald);
         }
+        if counted {
+            let cost = recorder.step("cost", || prepared.cost(&view, show), |_| 0)?;
+            costs.add(&cost, &picture);
+            if options.show == Shown::Cost {
+                picture = cost::picture(&cost);
+            }
+        }
         pictures.push(picture);
     }
     let mut legend = legend;
+    if counted {
+        let [fragments, reads] = costs.per_covered_pixel();
+        recorder.mean("fragments_per_covered_pixel", fragments);
+        recorder.mean("reads_per_covered_pixel", reads);
+        if options.show == Shown::Cost {
+            legend.push(format!(
+                "{reads:.1} texels are read for each pixel that shows anything, by {fragments:.1} fragments: none dark blue, a quarter of {most} blue, \
+                 half green, three quarters yellow, {most} and more red",
+                most = cost::MOST_READS
+            ));
+        }
+    }
     if options.show == Shown::Bald {
         recorder.count("furred pixels", baldness.furred);
         recorder.count("bald pixels", baldness.bald);

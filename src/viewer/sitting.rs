@@ -65,5 +65,6 @@ pub(super) fn frame(camera: &Camera, origin_m: DVec3, points_m: &[Vec3], size: [
         lights: lit.lights,
         ambient: lit.ambient,
         shadow_map: true,
+        depths: false,
     }
 }
