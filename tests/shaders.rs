@@ -127,7 +127,8 @@ fn structs_lie_as_in_rust() {
                 bend_per_m,
                 tint,
                 root,
-                outer_normal
+                outer_normal,
+                away_m
             }),
         ),
         (&shell, "Item", in_rust!(Item { index, layer })),

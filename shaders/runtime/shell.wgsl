@@ -4,7 +4,7 @@
 #import furrier::light::light_at
 #import furrier::items::{items, uncovered, shadow_reads, PAINTED_READS}
 #import furrier::lights::{Hair, Key, lit_by_all}
-#import furrier::shading::{past_skin, way_up}
+#import furrier::shading::{past_border, past_skin, way_to_border, way_up}
 #import furrier::law::{lit_by_sky, seen_of, worn_of}
 #import furrier::looks::layer_looks
 #import furrier::shadow_map::{HAIR_TAPS, key_share}
@@ -27,6 +27,8 @@ const SOFT: f32 = 0.906;
 const OPAQUE: f32 = 4.0;
 // The one look that is bound.
 const LOOK: u32 = 0u;
+// Lengths of hair from the coat's end up to which light comes in there, and from which on it does not.
+const BESIDE: vec2<f32> = vec2(1.0, 2.0);
 // Taps of the far side, which lies behind the near one and can do with fewer.
 const FAR_TAPS: f32 = 4.0;
 
@@ -40,23 +42,25 @@ const FAR_TAPS: f32 = 4.0;
 
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
-    @location(0) position_m: vec3<f32>,
+    // In xyz; how far it is from where the coat ends in w, m.
+    @location(0) position_m: vec4<f32>,
     @location(1) uv: vec2<f32>,
     @location(2) offset_m: vec3<f32>,
     // Of the slab, which lies as the coat's outer side does the more the higher it is.
     @location(3) normal: vec3<f32>,
     @location(4) tint: vec4<f32>,
-    // What one metre of the tile becomes on this triangle at this height.
-    @location(5) @interpolate(flat) x_axis: vec3<f32>,
-    @location(6) @interpolate(flat) y_axis: vec3<f32>,
+    // What one metre of the tile becomes on this triangle at this height. In w the square root of the triangle's area at this height over
+    // that on the skin, and how far fins stand for the hair around them.
+    @location(5) @interpolate(flat) x_axis: vec4<f32>,
+    @location(6) @interpolate(flat) y_axis: vec4<f32>,
     // How the slab and the skin bend along them: what the normal changes by, of x along x, of both along each other, of y along y.
     @location(7) @interpolate(flat) bend: vec3<f32>,
     @location(8) @interpolate(flat) skin_bend: vec3<f32>,
     // Layer, and 1 where it is seen from inside.
     @location(9) @interpolate(flat) layer: vec2<u32>,
     @location(10) axis: vec3<f32>,
-    // Square root of the triangle's area at this height over that on the skin; how far fins stand for the hair around them.
-    @location(11) @interpolate(flat) spread: vec2<f32>,
+    // How much further it is from where the coat ends, per metre.
+    @location(11) @interpolate(flat) away: vec3<f32>,
     @location(12) root: vec4<f32>,
     @location(13) longest: f32,
     // Normal of the facet, outwards, and how far it gives way to the smooth one.
@@ -92,36 +96,41 @@ fn vertex(@builtin(vertex_index) index: u32) -> Varyings {
 
     let own = vertices[indices[first + index % 3u]];
     var out: Varyings;
-    out.position_m = own.position_m + height * own.offset_m;
+    out.position_m = vec4(own.position_m + height * own.offset_m, own.away_m);
     out.uv = vec2(own.u, own.v);
     out.offset_m = own.offset_m;
     out.normal = mix(own.normal, own.outer_normal, height);
     out.skin_normal = own.normal;
     out.tint = own.tint;
-    out.x_axis = (edge_b * uv_c.y - edge_c * uv_b.y) * scale;
-    out.y_axis = (edge_c * uv_b.x - edge_b * uv_c.x) * scale;
+    let x_axis = (edge_b * uv_c.y - edge_c * uv_b.y) * scale;
+    let y_axis = (edge_c * uv_b.x - edge_b * uv_c.x) * scale;
     let normal_a = mix(a.normal, a.outer_normal, height);
     let normal_b = mix(b.normal, b.outer_normal, height);
     let normal_c = mix(c.normal, c.outer_normal, height);
-    let axes = mat2x3(out.x_axis, out.y_axis);
+    let axes = mat2x3(x_axis, y_axis);
     out.bend = bend_of(mat2x3(normal_b - normal_a, normal_c - normal_a), uv_b, uv_c, scale, axes);
     out.skin_bend = bend_of(mat2x3(b.normal - a.normal, c.normal - a.normal), uv_b, uv_c, scale, axes);
     out.layer = vec2(layer, item.layer >> 16u);
     out.root = own.root;
     out.longest = own.longest;
     out.axis = own.axis;
-    let foot = cross(b.position_m - a.position_m, c.position_m - a.position_m);
+    let foot_b = b.position_m - a.position_m;
+    let foot_c = c.position_m - a.position_m;
+    let foot = cross(foot_b, foot_c);
+    let further = (b.away_m - a.away_m) * cross(foot_c, foot) + (c.away_m - a.away_m) * cross(foot, foot_b);
+    out.away = further / max(dot(foot, foot), 1e-30);
     let spread = clamp(sqrt(length(cross(edge_b, edge_c)) / max(length(foot), 1e-30)), 1.0 / MOST_SPREAD, MOST_SPREAD);
     let face = cross(edge_b, edge_c);
     let around = length(edge_b) + length(edge_c) + length(edge_c - edge_b);
     let close = closeness(length(own.offset_m), length(face) / max(around, 1e-20));
-    out.spread = vec2(spread, close);
+    out.x_axis = vec4(x_axis, spread);
+    out.y_axis = vec4(y_axis, close);
     // The smooth normal is right where it is near the facet's at all corners, or where facets are small.
     let plain = face / max(length(face), 1e-30);
     let facet = select(-plain, plain, dot(plain, normal_a + normal_b + normal_c) >= 0.0);
     let nearest = min(min(dot(facet, normal_a), dot(facet, normal_b)), dot(facet, normal_c));
     out.facet = vec4(facet, max(close, smoothstep(HARD, SOFT, nearest)));
-    out.clip = select(vec4(0.0, 0.0, -1.0, 1.0), view.clip_from_world * vec4(out.position_m, 1.0), scale != 0.0);
+    out.clip = select(vec4(0.0, 0.0, -1.0, 1.0), view.clip_from_world * vec4(out.position_m.xyz, 1.0), scale != 0.0);
     return out;
 }
 
@@ -142,8 +151,9 @@ fn bend_along(bend: vec3<f32>, texture: vec2<f32>) -> f32 {
 
 // The way of light, or of the eye's ray, through the hair above a place.
 struct Way {
-    // Optical depth over hair area straight above.
+    // Optical depth over hair area straight above, and over that along it.
     longer: f32,
+    side: f32,
     // Metres of the tile that it rises, and that the skin bends away from it, by the metre and its square.
     rise: f32,
     bend_per_m: f32,
@@ -153,7 +163,7 @@ fn way_of(place: Place, medium: Medium, to: vec3<f32>, scale_m: f32) -> Way {
     let rise = dot(place.rise, to);
     let bend_per_m = bend_along(place.skin.bend, vec2(dot(place.skin.x_row, to), dot(place.skin.y_row, to)));
     let side = across(place.at, to, medium) / max(medium.extinction, LEAST_EXTINCTION);
-    return Way(side * way_up(rise, bend_per_m, scale_m), rise, bend_per_m);
+    return Way(side * way_up(rise, bend_per_m, scale_m), side, rise, bend_per_m);
 }
 
 // How a coat lies at a pixel, and how it is seen.
@@ -168,7 +178,7 @@ struct Place {
     sweep: Ray,
     bend_per_m: f32,
     skin: Skin,
-    // Metres of the tile that a direction rises over the skin.
+    // Metres of the tile that a direction rises over the slab.
     rise: vec3<f32>,
     uv: vec2<f32>,
     uv_dx: vec2<f32>,
@@ -190,15 +200,15 @@ struct Met {
 fn place_of(in: Varyings, offset_m: vec3<f32>, uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> Place {
     // Axes in the plane of the smooth normal, or facets would show; where they are larger than hair is long they are what there is.
     let normal = normalize(mix(in.facet.xyz, normalize(in.normal), in.facet.w));
-    let x_axis = in.x_axis - normal * dot(normal, in.x_axis);
-    let y_axis = in.y_axis - normal * dot(normal, in.y_axis);
+    let x_axis = in.x_axis.xyz - normal * dot(normal, in.x_axis.xyz);
+    let y_axis = in.y_axis.xyz - normal * dot(normal, in.y_axis.xyz);
     let up = offset_m / tile.height_m;
     let texture = frame(x_axis, y_axis, up);
     var at = texture;
     if tile.tinted > 0.5 {
-        at = hair_frame(in.axis, x_axis, normal, in.spread.x, up);
+        at = hair_frame(in.axis, x_axis, normal, in.x_axis.w, up);
     }
-    let world_ray = ray_direction(in.position_m);
+    let world_ray = ray_direction(in.position_m.xyz);
     let ray = ray_in_tile(at, world_ray);
     let sweep = Ray(vec3((texture.tile_from_world * world_ray).xy, ray.direction.z), ray.cosine, ray.fall);
 
@@ -207,9 +217,9 @@ fn place_of(in: Varyings, offset_m: vec3<f32>, uv_dx: vec2<f32>, uv_dy: vec2<f32
     let half_share = 0.5 * in.facet.w / max(dot(normal, at.world_from_tile[2]), LEAST_RISE);
     let skin = Skin(rows[0], rows[1], in.skin_bend * half_share);
     let bend_per_m = bend_along(in.bend * half_share, sweep.direction.xy);
-    // Light comes through hair as it does over the skin: that is how the law was solved.
+    let rise = normal / max(dot(normal, up), LEAST_RISE);
+    // What a hair sends where follows from how the skin lies: that is how the law was solved.
     let skin_normal = normalize(mix(in.facet.xyz, normalize(in.skin_normal), in.facet.w));
-    let rise = skin_normal / max(dot(skin_normal, up), LEAST_RISE);
     return Place(skin_normal, world_ray, at, ray, sweep, bend_per_m, skin, rise, in.uv, uv_dx, uv_dy);
 }
 
@@ -287,7 +297,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let found = met(place, slab, near_side);
     let medium = found.medium;
     let near = nearness(max(length(uv_dx), length(uv_dy)));
-    let kept = select(1.0, 1.0 - in.spread.y * fin_share(dot(place.normal, place.world_ray), near), WITH_FINS);
+    let kept = select(1.0, 1.0 - in.y_axis.w * fin_share(dot(place.normal, place.world_ray), near), WITH_FINS);
     let depth = found.depth * present * kept;
     if MEASURE == 1u {
         return vec4(min(depth, OPAQUE), 0.0, 0.0, 0.0);
@@ -335,15 +345,21 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     if any(view.ambient != vec3(0.0)) {
         radiance = view.ambient * lit_by_sky(LOOK, above, dot(tangent, to_eye), hair_normal, eye_normal, worn, crowding);
     }
-    let root_m = in.position_m - in.offset_m * (f32(in.layer.x) / f32(tile.layers - 1u));
+    let root_m = in.position_m.xyz - in.offset_m * (f32(in.layer.x) / f32(tile.layers - 1u));
     var key = Key(0.0, 0.0);
     if view.light_count > 0u {
-        let to_light = light_at(view.lights[0], in.position_m).to_light;
+        let to_light = light_at(view.lights[0], in.position_m.xyz).to_light;
         let way = way_of(place, medium, to_light, scale_m);
         let height_m = (f32(slab.layer) - within) * slab.slab_m;
-        let open = past_skin(way.rise, way.bend_per_m, height_m);
-        key = Key(area * way.longer, open * key_share(0u, root_m, in.position_m, normal, to_light, HAIR_TAPS));
+        // Where the coat ends before, light comes in from the side.
+        let nearer = dot(in.away, at.world_from_tile[2] * way.rise - to_light);
+        // From further away none arrives, and what ends there may be a pinhole.
+        let beside = 1.0 - smoothstep(BESIDE.x, BESIDE.y, in.position_m.w / max(length(in.offset_m), 1e-9));
+        let border_m = max(in.position_m.w, 0.0) / max(nearer * beside, 1e-6);
+        let open = max(past_skin(way.rise, way.bend_per_m, height_m), past_border(way.rise, border_m, height_m));
+        let longer = min(way.longer, way.side * way_to_border(way.rise, border_m, scale_m));
+        key = Key(area * longer, open * key_share(0u, root_m, in.position_m.xyz, normal, to_light, HAIR_TAPS));
     }
-    radiance += lit_by_all(Hair(in.position_m, tangent, normal, to_eye, above, crowding), seen, worn, key);
+    radiance += lit_by_all(Hair(in.position_m.xyz, tangent, normal, to_eye, above, crowding), seen, worn, key);
     return vec4(radiance * opacity, opacity);
 }

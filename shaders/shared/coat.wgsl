@@ -45,6 +45,8 @@ struct CoatVertex {
     root: vec4<f32>,
     // Normal of the coat's outer side.
     outer_normal: vec3<f32>,
+    // How far it is from where the coat ends, m; very far where it nowhere does.
+    away_m: f32,
 }
 
 // Which textures of the root there are, 0 or 1 each.

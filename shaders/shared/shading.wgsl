@@ -21,6 +21,19 @@ fn way_up(rise: f32, bend_per_m: f32, scale_m: f32) -> f32 {
     return level * exp(min(steep * steep / max(4.0 * bent, 1e-6), 20.0)) - out;
 }
 
+// The same where the coat ends after `border_m` along the light, over skin that is flat up to there.
+fn way_to_border(rise: f32, border_m: f32, scale_m: f32) -> f32 {
+    let ahead = border_m / max(scale_m, 1e-9);
+    let up = clamp(ahead * rise, -20.0, 80.0);
+    return select(ahead * (1.0 - exp(-up)) / up, ahead * (1.0 - 0.5 * up), abs(up) < 1e-3);
+}
+
+// Share of a light that comes past the edge of the skin to hair at `height_m` over it, where the coat ends after `border_m` along the
+// light.
+fn past_border(rise: f32, border_m: f32, height_m: f32) -> f32 {
+    return 1.0 - smoothstep(0.3, 1.0, -rise * border_m / max(height_m, 1e-9));
+}
+
 // Share of a light that comes by the skin to hair at `height_m` over it: below the horizon it is hidden by the body, unless the
 // skin bends away.
 fn past_skin(rise: f32, bend_per_m: f32, height_m: f32) -> f32 {

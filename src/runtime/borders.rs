@@ -10,11 +10,11 @@ const BACK: f32 = -0.98;
 
 /// How far each coat vertex is from where the coat ends, along edges, m.
 pub fn away_from_borders(furs: &[CoatMesh<'_>]) -> Vec<Vec<f32>> {
-    // Places by their bits: what touches is drawn from the same numbers.
-    let mut places: HashMap<[u32; 3], usize> = HashMap::new();
+    // Places by the micrometre: what touches is drawn from nearly the same numbers.
+    let mut places: HashMap<[i64; 3], usize> = HashMap::new();
     let mut at = Vec::new();
     let mut place = |p: Vec3| {
-        *places.entry(p.to_array().map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
+        *places.entry(p.to_array().map(|x| (f64::from(x) * 1e6).round() as i64)).or_insert_with(|| {
             at.push(p);
             at.len() - 1
         })

@@ -23,7 +23,7 @@ pub const MAIN: Source = Source {
     path: "formulas/look.wgsl",
     text: Text::Wgsl(
         "
-#import furrier::shading::{past_skin, skin_radiance, way_up}
+#import furrier::shading::{past_border, past_skin, skin_radiance, way_to_border, way_up}
 
 @group(2) @binding(0) var<storage, read> inputs: array<vec4<f32>>;
 @group(2) @binding(1) var<storage, read_write> outputs: array<vec4<f32>>;
@@ -39,7 +39,10 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let bend_per_m = inputs[i + 2u].w;
     let height_m = inputs[i + 3u].w;
     outputs[2u * id.x] = vec4(skin_radiance(albedo, normal, viewer, light, inputs[i + 1u].w), 0.0);
-    outputs[2u * id.x + 1u] = vec4(log(way_up(rise, bend_per_m, height_m)), past_skin(rise, bend_per_m, height_m), 0.0, 0.0);
+    let border_m = 0.1 * inputs[i + 1u].w;
+    let over_skin = vec2(log(way_up(rise, bend_per_m, height_m)), past_skin(rise, bend_per_m, height_m));
+    let at_border = vec2(log(way_to_border(rise, border_m, height_m)), past_border(rise, border_m, height_m));
+    outputs[2u * id.x + 1u] = vec4(over_skin, at_border);
 }
 ",
     ),
@@ -67,6 +70,9 @@ fn shaders_and_rust_agree_on_light_on_skin() {
         let [rise, bend_per_m, height_m] = [0, 2, 3].map(|k| f64::from(given[k].w));
         worst.note(i, "way up", out[1].x, reference::way_up(rise, bend_per_m, height_m).ln() as f32);
         worst.note(i, "past the skin", out[1].y, reference::past_skin(rise, bend_per_m, height_m) as f32);
+        let border_m = 0.1 * f64::from(given[1].w);
+        worst.note(i, "way to border", out[1].z, reference::way_to_border(rise, border_m, height_m).ln() as f32);
+        worst.note(i, "past the border", out[1].w, reference::past_border(rise, border_m, height_m) as f32);
         let skin = reference::skin_radiance(albedo, normal, viewer, light, given[1].w.into());
         worst.note_all(i, "skin", out[0].truncate(), skin.as_vec3());
     }

@@ -152,6 +152,18 @@ pub fn past_skin(rise: f64, bend_per_m: f64, height_m: f64) -> f64 {
     if rise >= 0.0 { 1.0 } else { 1.0 - smoothstep(0.3, 1.0, sunk_m / height_m.max(1e-9)) }
 }
 
+/// Light's way through hair that thins out with height, where the coat ends after `border_m`: ∫ e^(−rise s/scale) ds/scale.
+pub fn way_to_border(rise: f64, border_m: f64, scale_m: f64) -> f64 {
+    let ahead = border_m / scale_m.max(1e-9);
+    let up = (ahead * rise).clamp(-20.0, 80.0);
+    if up.abs() < 1e-6 { ahead } else { -ahead * (-up).exp_m1() / up }
+}
+
+/// Share of a light that comes past the edge of the skin.
+pub fn past_border(rise: f64, border_m: f64, height_m: f64) -> f64 {
+    1.0 - smoothstep(0.3, 1.0, -rise * border_m / height_m.max(1e-9))
+}
+
 /// Smooth step from 0 at `from` to 1 at `to`.
 pub fn smoothstep(from: f64, to: f64, x: f64) -> f64 {
     let t = ((x - from) / (to - from)).clamp(0.0, 1.0);

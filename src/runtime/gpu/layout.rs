@@ -201,7 +201,8 @@ pub struct CoatVertex {
     pub root: [f32; 4],
     /// Normal of the coat's outer side.
     pub outer_normal: [f32; 3],
-    pub(super) _pad0: f32,
+    /// How far it is from where the coat ends, m; [`FAR_AWAY_M`] where it nowhere does.
+    pub away_m: f32,
 }
 
 /// `Paint` of `shared/coat.wgsl`.
@@ -221,9 +222,12 @@ impl PaintUniform {
     }
 }
 
+/// Stands for a coat that ends nowhere, m.
+pub const FAR_AWAY_M: f32 = 1e3;
+
 impl CoatVertex {
-    /// The vertices of `fur`, whose skin bends so, 1/m.
-    pub fn of(fur: &CoatMesh<'_>, bends_per_m: &[f32]) -> Vec<Self> {
+    /// The vertices of `fur`, which are so far from where it ends, m, and whose skin bends so, 1/m.
+    pub fn of(fur: &CoatMesh<'_>, away_m: &[f32], bends_per_m: &[f32]) -> Vec<Self> {
         let outer_normals = outer_normals(fur);
         (0..fur.positions_m.len())
             .map(|i| Self {
@@ -238,7 +242,7 @@ impl CoatVertex {
                 tint: fur.tint[i].to_array(),
                 root: fur.root.get(i).map_or([0.0; 4], |root| root.to_array()),
                 outer_normal: outer_normals[i].to_array(),
-                _pad0: 0.0,
+                away_m: away_m[i].min(FAR_AWAY_M),
             })
             .collect()
     }

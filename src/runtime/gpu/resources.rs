@@ -317,7 +317,7 @@ impl GpuFur {
     ) -> Option<Self> {
         let bends_per_m = bends_per_m(fur);
         let sighted = tile.sighted(fur, away_m, &bends_per_m);
-        let vertices = CoatVertex::of(fur, &bends_per_m);
+        let vertices = CoatVertex::of(fur, away_m, &bends_per_m);
         let fins: Vec<FinInstance> = fur.fins.iter().map(|fin| FinInstance::new(fin, tile.fin_thickness_m)).collect();
         let bytes = bytes_of(&vertices) + bytes_of(fur.triangles) + bytes_of(&fins);
         let vertices = gpu.buffer("coat vertices", &vertices, wgpu::BufferUsages::STORAGE);
