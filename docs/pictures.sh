@@ -1,0 +1,37 @@
+#!/bin/sh
+# Makes the pictures of README.md and docs/ again, each by the command that stands below it there.
+#
+#   docs/pictures.sh FURRIER [MONKEY.glb]
+#
+# FURRIER is the program; MONKEY.glb the head that README.md furs (Blender: Add, Mesh, Monkey, Subdivision 2, smooth), without which
+# its picture stays. The picture of three.js is a browser's and not made here. Takes half a minute on two cores.
+set -eu
+
+furrier=$(realpath "$1")
+monkey=${2:+$(realpath "$2")}
+images=$(realpath "$(dirname "$0")/images")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+# README.md
+"$furrier" bake sample:creature -o creature.glb --preset fox
+"$furrier" view creature.glb --screenshot "$images/creature.png" --orbit 50,10,1 --size 800x640
+if [ -n "$monkey" ]; then
+    "$furrier" bake "$monkey" -o furry.glb --preset rabbit
+    "$furrier" view furry.glb --screenshot "$images/monkey.png" --orbit 25,10,1 --size 800x640
+fi
+
+# docs/steps/patch.md, docs/steps/field.md
+"$furrier" view creature.glb --screenshot "$images/patches.png" --show patches --orbit 50,10,1 --size 800x640
+"$furrier" view creature.glb --screenshot "$images/field.png" --show field --orbit 50,10,1 --size 800x640
+
+# docs/steps/hybrid.md
+guard="--set guard.density_per_cm2=60 --size 320x240 --quality final"
+for only in guard undercoat hybrid; do
+    "$furrier" render sample:cylinder -o "$images/hybrid/cylinder-$only.png" --preset mink $guard --orbit 30,35,0.8 --only $only
+    "$furrier" render sample:hat -o "$images/hybrid/hat-$only.png" --preset mink $guard --orbit 35,20,0.85 --only $only
+done
+for only in guard hybrid; do
+    "$furrier" render sample:creature -o "$images/hybrid/creature-$only.png" --preset fox $guard --orbit 50,15,0.45 --only $only
+done
