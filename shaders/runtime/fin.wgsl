@@ -14,6 +14,8 @@
 override MEASURE: u32 = 0u;
 // Reads of both textures of a fin, at the most.
 const FIN_READS: f32 = 8.0;
+// Least of how wide apart hair stands over a hollow, or texels of next to nothing would be opaque.
+const LEAST_SPREAD: f32 = 0.5;
 // Texels along the edge per texel along the hair that one fetch may average.
 const MAX_STRETCH: f32 = 4.0;
 
@@ -165,7 +167,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let scale_m = layer_looks[layer].scale_slabs * upright_m / f32(tile.layers - 1u);
 
     // Hair that stands out of a bent skin stands the wider apart the higher it is.
-    let spread = max(1.0 + 0.5 * in.bend_per_m * height_m, 0.1);
+    let spread = max(1.0 + 0.5 * in.bend_per_m * height_m, LEAST_SPREAD);
     let amount = in.weight * near_outline * present / (spread * spread);
     // Near by, whole hairs are left out; from afar, a share of each.
     let left = mix(amount, step(chance(u32(i32(floor(in.uv.x * STRIPS)))), amount), near);

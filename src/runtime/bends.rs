@@ -23,13 +23,17 @@ pub fn outer_normals(fur: &CoatMesh<'_>) -> Vec<Vec3> {
         let outer = sums.get(&key(v)).map_or(Vec3::ZERO, |sum| sum.normalize_or_zero());
         // Folds say nothing.
         let [least, most] = AGREEMENT;
-        let share = ((outer.dot(fur.normals[v]) - least) / (most - least)).clamp(0.0, 1.0);
+        // Nor do slabs along which hair lies.
+        let upright_m = fur.normals[v].dot(fur.offsets_m[v]).max(f32::MIN_POSITIVE);
+        let agreement = outer.dot(fur.normals[v]).min(outer.dot(fur.offsets_m[v]) / upright_m);
+        let share = ((agreement - least) / (most - least)).clamp(0.0, 1.0);
         fur.normals[v].lerp(outer, share).normalize_or(fur.normals[v])
     };
     (0..fur.normals.len()).map(normal).collect()
 }
 
-/// Cosines between the normals of both sides at which the outer one is folded, and at which it is not.
+/// Cosines between the normals of both sides, and how far hair stands out of the outer one over how far out of the skin, at which the outer
+/// one is folded, and at which it is not.
 const AGREEMENT: [f32; 2] = [0.2, 0.6];
 
 /// Sum of the principal curvatures at each coat vertex, 1/m, outwards positive: what the normal changes by along the triangles around it.
