@@ -222,6 +222,12 @@ fn costs_are_counted() {
     println!("{fragments} fragments, {reads} reads, {without} without the map");
     assert!((3.0..=8.0).contains(&fragments) && reads >= 25.0 + 3.0 * (fragments - 1.0));
     assert!(reads - without > 4.0 && reads - without <= 4.0 + fragments);
+    // On a slant a slab is fetched along the ray, tap after tap: each shell reads more than where it is seen from straight above.
+    let all = prepared.cost(&unshadowed, Show { fins: false, ..Show::default() }).unwrap();
+    let per_shell = |pixel: &[f32; 4]| (pixel[1] - 21.0) / (pixel[0] - 1.0);
+    let slanted = all.pixels.iter().filter(|pixel| pixel[0] >= 4.0 && pixel[1] > 21.0).map(per_shell).fold(0.0, f32::max);
+    println!("{slanted} reads of a shell at the most, {} in the middle", per_shell(&all.pixels[middle]));
+    assert!(slanted > 6.0, "{slanted}");
 }
 
 #[test]

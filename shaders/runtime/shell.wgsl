@@ -231,7 +231,7 @@ fn met(place: Place, slab: Filled, near_side: bool) -> Met {
     let run = run_through_slab(place.sweep, path_m, slab.slab_m, slopes[slab.layer]);
     var spot = footprint(place.uv_dx, place.uv_dy, run, select(FAR_TAPS, MOST_TAPS, near_side));
     var gain_level = footprint(place.uv_dx, place.uv_dy, vec2(0.0), MOST_TAPS).level;
-    if MEASURE > 0u {
+    if MEASURE == 1u || MEASURE == 2u {
         // The mean of the tile: no gap between two hairs counts as bald.
         gain_level = f32(tile.mips - 1u);
         spot = Footprint(vec2(0.0), 1.0, gain_level, gain_level);
