@@ -225,7 +225,8 @@ fn costs_are_counted() {
     // On a slant a slab is fetched along the ray, tap after tap: each shell reads more than where it is seen from straight above.
     let all = prepared.cost(&unshadowed, Show { fins: false, ..Show::default() }).unwrap();
     let per_shell = |pixel: &[f32; 4]| (pixel[1] - 21.0) / (pixel[0] - 1.0);
-    let slanted = all.pixels.iter().filter(|pixel| pixel[0] >= 4.0 && pixel[1] > 21.0).map(per_shell).fold(0.0, f32::max);
+    let slanted =
+        all.pixels.iter().filter(|pixel| pixel[0] >= 4.0 && pixel[1] > 21.0).map(per_shell).fold(0.0, f32::max);
     println!("{slanted} reads of a shell at the most, {} in the middle", per_shell(&all.pixels[middle]));
     assert!(slanted > 6.0, "{slanted}");
 }

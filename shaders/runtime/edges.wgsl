@@ -1,4 +1,5 @@
 // The skin's edges: sampled finer than hair is shaded. Hair behind an edge takes its share of the pixel.
+#import furrier::whole::whole_target
 
 @group(0) @binding(0) var depths: texture_depth_multisampled_2d;
 
@@ -11,9 +12,7 @@ struct Pixel {
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    // One triangle over the whole target.
-    let corner = vec2(f32(index & 1u), f32(index >> 1u));
-    return vec4(corner * 4.0 - 1.0, 0.0, 1.0);
+    return whole_target(index);
 }
 
 @fragment

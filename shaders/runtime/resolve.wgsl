@@ -1,4 +1,5 @@
 // Many samples to one pixel: a box filter in linear light, and the nearest depth.
+#import furrier::whole::whole_target
 
 @group(0) @binding(0) var samples: texture_2d<f32>;
 @group(0) @binding(1) var depths: texture_depth_2d;
@@ -15,9 +16,7 @@ struct Pixel {
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    // One triangle over the whole target.
-    let corner = vec2(f32(index & 1u), f32(index >> 1u));
-    return vec4(corner * 4.0 - 1.0, 0.0, 1.0);
+    return whole_target(index);
 }
 
 @fragment

@@ -4,6 +4,10 @@ use super::draw_list::CoatMesh;
 use crate::math::Vec3;
 use std::collections::HashMap;
 
+/// Cosines between the normals of both sides, and how far hair stands out of the outer one over how far out of the skin, at which the outer
+/// one is folded, and at which it is not.
+const AGREEMENT: [f32; 2] = [0.2, 0.6];
+
 /// Unit normals of the coat's outer side at each vertex, outwards: where hair grows longer along the skin, it leans away from the skin's.
 pub fn outer_normals(fur: &CoatMesh<'_>) -> Vec<Vec3> {
     let bits = |v: Vec3| v.to_array().map(|x| (x + 0.0).to_bits());
@@ -21,9 +25,8 @@ pub fn outer_normals(fur: &CoatMesh<'_>) -> Vec<Vec3> {
     }
     let normal = |v: usize| {
         let outer = sums.get(&key(v)).map_or(Vec3::ZERO, |sum| sum.normalize_or_zero());
-        // Folds say nothing.
+        // Folds say nothing, nor do slabs along which hair lies.
         let [least, most] = AGREEMENT;
-        // Nor do slabs along which hair lies.
         let upright_m = fur.normals[v].dot(fur.offsets_m[v]).max(f32::MIN_POSITIVE);
         let agreement = outer.dot(fur.normals[v]).min(outer.dot(fur.offsets_m[v]) / upright_m);
         let share = ((agreement - least) / (most - least)).clamp(0.0, 1.0);
@@ -31,10 +34,6 @@ pub fn outer_normals(fur: &CoatMesh<'_>) -> Vec<Vec3> {
     };
     (0..fur.normals.len()).map(normal).collect()
 }
-
-/// Cosines between the normals of both sides, and how far hair stands out of the outer one over how far out of the skin, at which the outer
-/// one is folded, and at which it is not.
-const AGREEMENT: [f32; 2] = [0.2, 0.6];
 
 /// Sum of the principal curvatures at each coat vertex, 1/m, outwards positive: what the normal changes by along the triangles around it.
 pub fn bends_per_m(fur: &CoatMesh<'_>) -> Vec<f32> {

@@ -122,12 +122,9 @@ impl Order {
         let mut order = Self::default();
         for place in places {
             let fur = place.fur as usize;
-            order.push(
-                place.fins,
-                fur,
-                furs[fur].looks.get(place.item.layer() as usize).map_or(0, |&look| if place.fins { 0 } else { look }),
-                place.item,
-            );
+            // What stands out as fins is guard hair.
+            let look = if place.fins { 0 } else { furs[fur].looks[place.item.layer() as usize] };
+            order.push(place.fins, fur, look, place.item);
         }
         order
     }

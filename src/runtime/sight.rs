@@ -7,10 +7,8 @@ use crate::math::{Vec3, Vec4};
 
 /// Optical depth behind which hair is not looked at: a four-hundredth of what is there would be seen.
 const UNSEEN: f32 = 6.0;
-/// Cosine between normal and view below which hair hides nothing for sure: what is seen on a slant comes in from the side.
+/// Cosine between normal and view below which neither hair nor skin hides anything for sure: what is seen on a slant comes in from the side.
 const SLANTING: f32 = 0.1;
-/// The same for skin that faces away.
-const TURNED: f32 = -0.1;
 /// Share of a hair's length that stands up, below which it hides nothing.
 const LYING: f32 = 0.05;
 
@@ -175,7 +173,7 @@ impl Sighted {
         let facet = face.normalize_or_zero() * face.dot(normals).signum();
         let (rise, upright_m) = (facet.dot(to_eye), facet.dot(offset_m));
         let lying = upright_m <= LYING * hair_m;
-        let slanting = TURNED < rise && rise < SLANTING;
+        let slanting = rise.abs() < SLANTING;
         if hair_m <= 0.0 || slanting || lying || least(|p| p.away_m) < 2.0 * hair_m / rise.abs().max(2.0 * SLANTING) {
             return false;
         }

@@ -21,6 +21,7 @@ pub const ELSEWHERE: &[(&str, &[&str], &str)] = &[
     ("runtime/caster.wgsl", &["vertex"], SHADOWS),
     ("shared/shadow_map.wgsl", &["key_share"], SHADOWS),
     ("runtime/items.wgsl", &["uncovered", "shadow_reads"], EDGES),
+    ("runtime/whole.wgsl", &["whole_target"], "covers a target: all tests of the runtime look through it"),
     ("runtime/edges.wgsl", &["vertex", "fragment"], EDGES),
     ("runtime/resolve.wgsl", &["vertex", "fragment"], "a mean of samples: all tests of the runtime look through it"),
     ("shared/coat.wgsl", &["fetch"], "samples a texture: twins.rs compares it between texels and mips"),

@@ -13,7 +13,7 @@ macro_rules! source {
 }
 
 /// Modules that others import, imported ones first.
-pub const SHARED: [Source; 13] = [
+pub const SHARED: [Source; 14] = [
     Source::constants("constants", &CONSTANTS),
     Source::constants("law_constants", &LAW_CONSTANTS),
     source!("shared/look.wgsl"),
@@ -22,6 +22,7 @@ pub const SHARED: [Source; 13] = [
     source!("shared/light.wgsl"),
     source!("shared/view.wgsl"),
     source!("runtime/items.wgsl"),
+    source!("runtime/whole.wgsl"),
     source!("shared/shadow_map.wgsl"),
     source!("shared/fur_light.wgsl"),
     source!("shared/shading.wgsl"),
