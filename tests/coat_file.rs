@@ -200,7 +200,7 @@ fn fallback_shells_get_denser_inwards_and_keep_the_stack_opacity() {
     let opacity = |count: u32| {
         let shells = asset::coat::flatten_shells(&stack, 0.01, count);
         let clear =
-            |texel: usize| shells.iter().map(|s| 1.0 - f64::from(s.pixels[4 * texel + 3]) / 255.0).product::<f64>();
+            |texel: usize| shells.iter().map(|s| 1.0 - f64::from(s.1.pixels[4 * texel + 3]) / 255.0).product::<f64>();
         let texels = (stack.size * stack.size) as usize;
         1.0 - (0..texels).map(clear).sum::<f64>() / texels as f64
     };

@@ -3,7 +3,7 @@
 
 use furrier::data::coat::{FinEdge, FinTexture, Sampled, ShellStack, Tile};
 use furrier::data::image::{Image8, srgb_from_linear, unorm8};
-use furrier::data::shell::code_above;
+use furrier::data::shell::{Slabs, code_above};
 use furrier::math::hash::Stream;
 use furrier::math::{Vec2, Vec3, Vec4};
 use furrier::runtime::{CoatMesh, DrawList, SkinMesh};
@@ -101,6 +101,7 @@ pub fn tile(hairs: &[Hair], edge_m: f32, layers: u32, size: u32, seed: u64) -> T
         preset: "made".into(),
         sampled: Sampled::Square,
         looks: None,
+        levels: vec![],
         edge_m,
         height_m,
         shells: shells(voxels, size, layers, slab_m, texel_m),
@@ -111,6 +112,7 @@ pub fn tile(hairs: &[Hair], edge_m: f32, layers: u32, size: u32, seed: u64) -> T
 fn shells(mut voxels: Vec<Vec<Voxel>>, size: u32, layers: u32, slab_m: f32, texel_m: f32) -> ShellStack {
     let mut stack = ShellStack {
         layers,
+        slabs: Slabs::even(layers as usize - 1),
         size,
         gains: vec![],
         slopes: vec![Vec2::ZERO; layers as usize],

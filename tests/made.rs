@@ -2,9 +2,10 @@
 
 use furrier::asset::Asset;
 use furrier::data::coat::{
-    Blend, Coat, CoatPrimitive, FinEdge, FinTexture, LOOK, Sampled, ShellStack, Tile, TileLooks,
+    Blend, Coat, CoatPrimitive, FinEdge, FinTexture, LOOK, Level, Sampled, ShellStack, Tile, TileLooks,
 };
 use furrier::data::image::Image8;
+use furrier::data::shell::Slabs;
 use furrier::math::hash::Stream;
 use furrier::math::{Vec2, Vec4};
 
@@ -47,11 +48,17 @@ pub fn tile(seed: u64) -> Tile {
     Tile {
         preset: format!("made {seed}"),
         sampled: if seed.is_multiple_of(2) { Sampled::Skin } else { Sampled::Square },
+        levels: if seed == 1 {
+            vec![Level { shells: tile(4).shells, undercoat_share: vec![0.25; 5], most_px: 9.0 }]
+        } else {
+            vec![]
+        },
         looks: (!seed.is_multiple_of(3)).then(|| looks(seed)),
         edge_m: 0.008,
         height_m: 0.012,
         shells: ShellStack {
             layers: 5,
+            slabs: Slabs::with_tops(vec![0.0, 0.4, 0.6, 0.75, 0.95]).expect("tops rise"),
             size: 8,
             gains: (0..4)
                 .map(|mip| {

@@ -3,7 +3,7 @@
 use crate::{coats, runtime};
 use furrier::data::coat::Tile;
 use furrier::math::{Vec3, Vec4};
-use furrier::runtime::{Before, Frame, Item, Order, Point, Show, Sighted, bends_per_m, outer_edge_m};
+use furrier::runtime::{Before, Frame, Item, LevelSight, Order, Point, Show, Sighted, bends_per_m, outer_edge_m};
 
 const LAYERS: u32 = 9;
 const RADIUS_M: f32 = 0.05;
@@ -24,15 +24,18 @@ fn sphere(middle: Vec3, above: f32) -> Sighted {
         bend_per_m: bends[i],
         away_m: f32::INFINITY,
     };
-    let before = |layer: u32| Before { above_top: [if layer < LAYERS / 2 { above } else { 0.0 }; 9], scale_slabs: 2.0 };
+    let before = |layer: u32| Before { above_top: [if layer < LAYERS / 2 { above } else { 0.0 }; 9], scale: 0.25 };
     Sighted {
         points: (0..mesh.positions_m.len()).map(point).collect(),
         triangles: mesh.triangles.to_vec(),
         fins: vec![],
         height_m: tile.height_m,
-        before: (0..LAYERS).map(before).collect(),
-        looks: vec![0; LAYERS as usize],
-        layers: LAYERS,
+        levels: vec![LevelSight {
+            tops: tile.shells.slabs.tops().to_vec(),
+            before: (0..LAYERS).map(before).collect(),
+            looks: vec![0; LAYERS as usize],
+            most_px: f32::INFINITY,
+        }],
         edge_m: outer_edge_m(mesh),
         over_last: false,
     }

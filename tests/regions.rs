@@ -76,6 +76,7 @@ fn view(edge_m: f32) -> Frame {
         ambient: Vec3::ONE,
         shadow_map: false,
         depths: false,
+        level: None,
     }
 }
 
@@ -251,7 +252,7 @@ fn colour_error(stacks: &[Stack<'_>], layers: usize, theta_deg: f32, w: f32, ove
     let seen = Incidence::new(Vec3::new(sin, 0.0, -cos), furrier::math::Mat3::IDENTITY, 1.0 / 64.0);
     let depth = |tile: usize, layer: usize, uv| {
         let stack: &Stack<'_> = &stacks[tile];
-        stack.gain(layer, &seen) * slab_optical_depth(&stack.fetch(layer, uv, &seen), &seen, stack.slab_m())
+        stack.gain(layer, &seen) * slab_optical_depth(&stack.fetch(layer, uv, &seen), &seen, stack.slab_m(layer))
     };
     let errors: Vec<f32> = (0..1024)
         .map(|i| {

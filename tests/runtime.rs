@@ -27,6 +27,7 @@ pub fn look(eye: Vec3, size: [u32; 2]) -> Frame {
         ambient: Vec3::splat(0.5),
         shadow_map: true,
         depths: false,
+        level: None,
     }
 }
 

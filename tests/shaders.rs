@@ -8,7 +8,7 @@ use furrier::hybrid::gpu::kernels;
 use furrier::hybrid::gpu::layout::{BlocksUniform, SceneUniform, ViewUniform as CameraUniform};
 use furrier::runtime::Item;
 use furrier::runtime::gpu::layout::{
-    CoatVertex, FinInstance, LayerLook, Mip, PaintUniform, SkinVertex, TileUniform, ViewUniform,
+    CoatVertex, FinInstance, LayerLook, Mip, PaintUniform, SkinVertex, SlabItem, TileUniform, ViewUniform,
 };
 use furrier::runtime::gpu::pipelines::{CASTER, EDGES, FIN, RESOLVE, SHARED, SHELL, SKIN};
 use furrier::shade::fibre::FibreLobe;
@@ -112,7 +112,8 @@ fn structs_lie_as_in_rust() {
         ),
         (&shell, "Tile", in_rust!(TileUniform { edge_m, height_m, size, layers, mips, tinted, medium_unit_per_m })),
         (&shell, "Mip", in_rust!(Mip { gains })),
-        (&shell, "LayerLook", in_rust!(LayerLook { crowding, area, top_share, scale_slabs })),
+        (&shell, "LayerLook", in_rust!(LayerLook { crowding, area, top_share, scale })),
+        (&shell, "Slab", in_rust!(SlabItem { slope, bottom, top })),
         (
             &shell,
             "CoatVertex",

@@ -3,6 +3,7 @@
 use furrier::coat::summary::{draw_calls_note, summarise};
 use furrier::data::coat::{Coat, CoatPrimitive, FinEdge, FinTexture, Sampled, ShellStack, Tile};
 use furrier::data::image::Image8;
+use furrier::data::shell::Slabs;
 use furrier::math::{Vec2, Vec3, Vec4};
 
 /// A tile of 5 layers of 4² with one mip level, and a quad that carries it with one fin.
@@ -10,6 +11,7 @@ fn coat() -> Coat {
     let image = |channels| vec![vec![Image8::new(4, 4, channels); 5]];
     let shells = ShellStack {
         layers: 5,
+        slabs: Slabs::even(4),
         size: 4,
         gains: vec![vec![[1.0; 9]; 5]],
         slopes: vec![Vec2::ZERO; 5],
@@ -36,6 +38,7 @@ fn coat() -> Coat {
         preset: "made".into(),
         sampled: Sampled::Square,
         looks: None,
+        levels: vec![],
         edge_m: 0.01,
         height_m: 0.02,
         shells,

@@ -8,7 +8,7 @@
 #import furrier::looks::layer_looks
 #import furrier::shadow_map::{HAIR_TAPS, key_share}
 #import furrier::constants::{INVISIBLE, LEAST_COSINE}
-#import furrier::coat::{CoatVertex, Paint, Root, root_of, tile, area_above, presence, thinned, closeness, at_outline, nearness, STRIPS}
+#import furrier::coat::{CoatVertex, Paint, Root, root_of, tile, slabs, area_above, presence, thinned, closeness, at_outline, nearness, STRIPS}
 
 // Whether it is drawn, or 4 for what it costs: fragments in red, reads of texels in green.
 override MEASURE: u32 = 0u;
@@ -162,13 +162,16 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let hair_m = length(offset_m);
     let height_m = (1.0 - uv.y) * hair_m;
     let above = area_above(medium.a) * present * hair_m / tile.height_m;
-    let layer = u32(clamp(ceil((1.0 - uv.y) * f32(tile.layers - 1u)), 1.0, f32(tile.layers - 1u)));
+    var layer = 1u;
+    while layer + 1u < tile.layers && slabs[layer].top < 1.0 - uv.y {
+        layer++;
+    }
     let upright_m = max(dot(up, normal), LEAST_COSINE) * hair_m;
-    let scale_m = layer_looks[layer].scale_slabs * upright_m / f32(tile.layers - 1u);
+    let scale_m = layer_looks[layer].scale * upright_m;
 
     // Hair that stands out of a bent skin stands the wider apart the higher it is.
     let spread = max(1.0 + 0.5 * in.bend_per_m * height_m, LEAST_SPREAD);
-    let amount = in.weight * near_outline * present / (spread * spread);
+    let amount = in.weight * near_outline * present * paint.fins / (spread * spread);
     // Near by, whole hairs are left out; from afar, a share of each.
     let left = mix(amount, step(chance(u32(i32(floor(in.uv.x * STRIPS)))), amount), near);
     let opacity = thinned(surface.a, select(left, amount, amount >= 1.0)) * uncovered(in.clip);

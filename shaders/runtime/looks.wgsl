@@ -10,8 +10,8 @@ struct LayerLook {
     area: f32,
     // Hair area above the layer's top over that above its middle.
     top_share: f32,
-    // Height over which the hair area above falls to 1/e, slabs.
-    scale_slabs: f32,
+    // Height over which the hair area above falls to 1/e, over the stack's.
+    scale: f32,
 }
 
 @group(1) @binding(7) var<storage, read> looks: array<Look>;

@@ -9,8 +9,8 @@
 #import furrier::looks::layer_looks
 #import furrier::shadow_map::{HAIR_TAPS, key_share}
 #import furrier::constants::{INVISIBLE, LEAST_EXTINCTION, LEAST_RISE, LEAST_UV_AREA, MOST_SPREAD, MOST_TAPS}
-#import furrier::coat::{CoatVertex, Paint, Root, root_of, Filled, filled_slab, Frame, Medium, Footprint, tile, slopes, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
-    lateral, across, area_above, seen_at, depth_of_opacity, presence, path_through_slab, footprint, fetch, run_through_slab, gain, medium_of, fin_share, nearness, closeness}
+#import furrier::coat::{CoatVertex, Paint, Root, root_of, Filled, filled_slab, Frame, Medium, Footprint, tile, slabs, hair_sampler, albedo_texture, medium_texture, ends_texture, Ray, frame, hair_frame, ray_in_tile,
+    lateral, across, area_above, seen_at, seen_above, depth_of_opacity, presence, path_through_slab, footprint, fetch, run_through_slab, gain, medium_of, fin_share, nearness, closeness}
 
 // Whether fins are drawn too and take their share.
 override WITH_FINS: bool = true;
@@ -83,7 +83,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> Varyings {
     let a = vertices[indices[first]];
     let b = vertices[indices[first + 1u]];
     let c = vertices[indices[first + 2u]];
-    let height = f32(layer) / f32(tile.layers - 1u);
+    let height = slabs[layer].top;
     let at_a = a.position_m + height * a.offset_m;
     let edge_b = b.position_m + height * b.offset_m - at_a;
     let edge_c = c.position_m + height * c.offset_m - at_a;
@@ -195,6 +195,7 @@ struct Met {
     round_level: f32,
     // How many texels were read, as a sampler counts.
     reads: f32,
+    gained: f32,
 }
 
 fn place_of(in: Varyings, offset_m: vec3<f32>, uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> Place {
@@ -228,7 +229,7 @@ fn met(place: Place, slab: Filled, near_side: bool) -> Met {
     let inwards = select(-0.5, 0.5, near_side) * path_m;
     let uv = place.uv + inwards * place.sweep.direction.xy / tile.edge_m;
 
-    let run = run_through_slab(place.sweep, path_m, slab.slab_m, slopes[slab.layer]);
+    let run = run_through_slab(place.sweep, path_m, slab.slab_m, slabs[slab.layer].slope);
     var spot = footprint(place.uv_dx, place.uv_dy, run, select(FAR_TAPS, MOST_TAPS, near_side));
     var gain_level = footprint(place.uv_dx, place.uv_dy, vec2(0.0), MOST_TAPS).level;
     if MEASURE == 1u || MEASURE == 2u {
@@ -243,7 +244,8 @@ fn met(place: Place, slab: Filled, near_side: bool) -> Met {
     // τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], model e of docs/steps/shells.md; g by the pixel's own mip.
     let through = path_m * lateral(place.at, place.world_ray, medium);
     let of_ends = slab.slabs * depth_of_opacity(ends) * min(1.0, path_m * place.ray.fall / max(slab.slab_m, 1e-20));
-    return Met(gain(gain_level, u32(slab.layer), place.ray.cosine) * (through + of_ends), medium, uv, spot.round_level, spot.taps + 1.0);
+    let gained = gain(gain_level, u32(slab.layer), place.ray.cosine);
+    return Met(gained * (through + of_ends), medium, uv, spot.round_level, spot.taps + 1.0, gained);
 }
 
 @fragment
@@ -262,7 +264,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     if PAINTED && paint.has_painted > 0u && tile.tinted > 0.5 {
         root = root_of(textureSampleGrad(painted_texture, painted_sampler, in.root.zw, 0, root_dx.zw, root_dy.zw), in.longest);
     }
-    var slab = Filled(i32(in.layer.x), tile.height_m / f32(tile.layers - 1u), 1.0);
+    var slab = Filled(i32(in.layer.x), (slabs[in.layer.x].top - slabs[in.layer.x].bottom) * tile.height_m, 1.0);
     if PAINTED {
         slab = filled_slab(in.layer.x, root.share);
     }
@@ -292,13 +294,13 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     }
 
     let look = layer_looks[u32(slab.layer)];
-    let scale_m = look.scale_slabs * slab.slab_m;
+    let scale_m = look.scale * tile.height_m;
     let to_eye = -place.world_ray;
     let found = met(place, slab, near_side);
     let medium = found.medium;
     let near = nearness(max(length(uv_dx), length(uv_dy)));
-    let kept = select(1.0, 1.0 - in.y_axis.w * fin_share(dot(place.normal, place.world_ray), near), WITH_FINS);
-    let depth = found.depth * present * kept;
+    let kept = select(1.0, 1.0 - paint.fins * in.y_axis.w * fin_share(dot(place.normal, place.world_ray), near), WITH_FINS);
+    let depth = found.depth * present * kept * paint.share;
     if MEASURE == 1u {
         return vec4(min(depth, OPAQUE), 0.0, 0.0, 0.0);
     }
@@ -331,13 +333,17 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let hair_normal = dot(tangent, normal);
     let eye_normal = dot(to_eye, normal);
     // Less lies above what is seen of a slab than above its middle.
-    var from_middle = 1.0;
+    let middle_area = area_above(surface.a) * present;
+    let top_area = middle_area * look.top_share;
+    let own_area = 2.0 * (middle_area - top_area);
+    var seen_depth = 0.0;
     var within = 0.5;
+    var area = middle_area;
     if near_side {
-        within = seen_at(look.area * present * way_of(place, medium, to_eye, scale_m).longer);
-        from_middle = mix(look.top_share, 1.0, 2.0 * within);
+        seen_depth = found.gained * own_area * way_of(place, medium, to_eye, scale_m).longer;
+        within = seen_at(seen_depth);
+        area = top_area + own_area * seen_above(seen_depth, own_area);
     }
-    let area = area_above(surface.a) * present * from_middle;
     let above = area * length(at.world_from_tile[2]);
     let crowding = look.crowding * present;
     let seen = seen_of(LOOK, above, dot(tangent, to_eye), hair_normal, eye_normal);
@@ -345,12 +351,12 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     if any(view.ambient != vec3(0.0)) {
         radiance = view.ambient * lit_by_sky(LOOK, above, dot(tangent, to_eye), hair_normal, eye_normal, worn, crowding);
     }
-    let root_m = in.position_m.xyz - in.offset_m * (f32(in.layer.x) / f32(tile.layers - 1u));
+    let root_m = in.position_m.xyz - in.offset_m * slabs[in.layer.x].top;
     var key = Key(0.0, 0.0);
     if view.light_count > 0u {
         let to_light = light_at(view.lights[0], in.position_m.xyz).to_light;
         let way = way_of(place, medium, to_light, scale_m);
-        let height_m = (f32(slab.layer) - within) * slab.slab_m;
+        let height_m = slabs[slab.layer].top * tile.height_m - within * slab.slab_m;
         // Where the coat ends before, light comes in from the side.
         let nearer = dot(in.away, at.world_from_tile[2] * way.rise - to_light);
         // From further away none arrives, and what ends there may be a pinhole.
@@ -358,7 +364,8 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         let border_m = max(in.position_m.w, 0.0) / max(nearer * beside, 1e-6);
         let open = max(past_skin(way.rise, way.bend_per_m, height_m), past_border(way.rise, border_m, height_m));
         let longer = min(way.longer, way.side * way_to_border(way.rise, border_m, scale_m));
-        key = Key(area * longer, open * key_share(0u, root_m, in.position_m.xyz, normal, to_light, HAIR_TAPS));
+        let own_depth = select(area * longer, top_area * longer + own_area * longer * seen_above(seen_depth, own_area * longer), near_side);
+        key = Key(own_depth, open * key_share(0u, root_m, in.position_m.xyz, normal, to_light, HAIR_TAPS));
     }
     radiance += lit_by_all(Hair(in.position_m.xyz, tangent, normal, to_eye, above, crowding), seen, worn, key);
     return vec4(radiance * opacity, opacity);

@@ -20,6 +20,15 @@ struct Tile {
     medium_unit_per_m: f32,
 }
 
+// A layer: where it lies in the stack.
+struct Slab {
+    // Mean slope of the hair, (dx, dy)/dz in tile axes.
+    slope: vec2<f32>,
+    // Heights over the stack's.
+    bottom: f32,
+    top: f32,
+}
+
 // Of one layer.
 struct Mip {
     // At GAIN_ANGLES_DEG.
@@ -49,18 +58,21 @@ struct CoatVertex {
     away_m: f32,
 }
 
-// Which textures of the root there are, 0 or 1 each.
+// Which textures of the root there are, 0 or 1 each; and what of the coat is drawn.
 struct Paint {
     has_colour: u32,
     has_painted: u32,
+    // Share of the optical depth that the level which is drawn has, and of the fins.
+    share: f32,
+    fins: f32,
 }
 
 // Strips of hair along a tile's edge that are told apart near by.
 const STRIPS: f32 = 128.0;
 
 @group(1) @binding(0) var<uniform> tile: Tile;
-// Per layer: mean slope of the hair, (dx, dy)/dz in tile axes.
-@group(1) @binding(1) var<storage, read> slopes: array<vec2<f32>>;
+// Per layer.
+@group(1) @binding(1) var<storage, read> slabs: array<Slab>;
 // Of every layer, mip after mip.
 @group(1) @binding(2) var<storage, read> mips: array<Mip>;
 @group(1) @binding(3) var hair_sampler: sampler;
@@ -157,6 +169,17 @@ fn seen_at(depth: f32) -> f32 {
     return 1.0 / depth - 1.0 / (exp(min(depth, 80.0)) - 1.0);
 }
 
+// Share of a layer's hair that lies above what is seen of it, of which the layer holds `area` per skin area; `depth` is what the eye's
+// ray meets of it. Not the mean, but what darkens by e to minus it as much as all that is seen does in the mean. Less of either than
+// LEAST_SEEN would be told by roundings.
+const LEAST_SEEN: f32 = 0.02;
+fn seen_above(depth: f32, area: f32) -> f32 {
+    let t = max(depth, LEAST_SEEN);
+    let d = max(area, LEAST_SEEN);
+    let both = t + d;
+    return -log(t / both * (1.0 - exp(-both)) / (1.0 - exp(-t))) / d;
+}
+
 // Opacity of a slab with `amount` times as much hair as one of this opacity. Hair is opaque where it is: less hair covers less of
 // what it covers, and does not become more of a veil.
 fn thinned(opacity: f32, amount: f32) -> f32 {
@@ -191,11 +214,15 @@ struct Filled {
 }
 
 fn filled_slab(layer: u32, share: f32) -> Filled {
-    let slabs = f32(tile.layers - 1u);
-    let bottom = f32(layer) - 1.0;
-    let filled = clamp(share * slabs - bottom, 0.0, 1.0) / max(share, 1e-6);
-    let middle = bottom / max(share, 1e-6) + 0.5 * filled;
-    return Filled(i32(clamp(floor(middle) + 1.0, 1.0, slabs)), filled * tile.height_m / slabs, filled);
+    let last = tile.layers - 1u;
+    let bottom = slabs[layer].bottom / max(share, 1e-6);
+    let top = min(slabs[layer].top / max(share, 1e-6), slabs[last].top);
+    let filled = max(top - bottom, 0.0);
+    var own = layer;
+    while own < last && slabs[own].top <= 0.5 * (bottom + top) {
+        own++;
+    }
+    return Filled(i32(own), filled * tile.height_m, filled / (slabs[own].top - slabs[own].bottom));
 }
 
 // How much of hair with this offset is there: skin without hair has offsets of length 0, and the last hundredth fades.

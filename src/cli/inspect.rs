@@ -87,6 +87,14 @@ fn print(inspection: &Inspection, out: &mut dyn Write) -> io::Result<()> {
         if let Some(used) = tile.texels_used {
             writeln!(out, "    {:.1} % of its texels lie on skin, the rest between charts", 100.0 * used)?;
         }
+        for (level, coarser) in tile.levels.iter().enumerate().skip(1) {
+            let (layers, size, most_px) = (coarser.layers, coarser.texture_size, coarser.most_px.unwrap_or_default());
+            let bytes = megabytes(coarser.vram_bytes);
+            writeln!(
+                out,
+                "    level {level}: {layers} layers of {size}², where hair is up to {most_px:.1} pixels high, {bytes}"
+            )?;
+        }
         writeln!(
             out,
             "    layers are 2 pixels apart at {:.2} m ({} pixels high, {}° of view); step back further",

@@ -44,6 +44,9 @@ pub struct View {
     /// Leave out the shadow that the key light casts from limb to limb, and from the occluder
     #[arg(long)]
     no_shadow: bool,
+    /// Draw this level of detail: 0 is the finest [default: by the height of hair in the picture]
+    #[arg(long, value_name = "N")]
+    level: Option<usize>,
     /// Play this animation, by name or number
     #[arg(long, value_name = "NAME")]
     animation: Option<String>,
@@ -107,6 +110,7 @@ impl View {
             stage: self.stage.options()?,
             show: viewer::parse_show(&self.show)?,
             moment: self.animation.clone().map(|name| (name, self.time.unwrap_or(0.0))),
+            level: self.level,
             shadow_map: !self.no_shadow,
             occluder: self.occluder.as_deref().map(asset::load).transpose()?,
             ..ViewOptions::default()

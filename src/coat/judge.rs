@@ -95,7 +95,7 @@ fn constant_coverage(stack: &Stack<'_>, tile: &Tile, uv: Vec2, seen: &Incidence,
         .map(|layer| {
             // Fetched where the view ray meets the layer, as if seen from above.
             let texel = stack.fetch_middle(layer, stack.middle(layer, uv, seen), &above);
-            stack.gain(layer, &above) * slab_optical_depth(&texel, &above, stack.slab_m())
+            stack.gain(layer, &above) * slab_optical_depth(&texel, &above, stack.slab_m(layer))
         })
         .sum();
     -libm::expm1f(-depth)

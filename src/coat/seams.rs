@@ -83,7 +83,7 @@ fn brightness(stack: &Stack<'_>, tile: &Tile, uv: Vec2, seen: &Incidence) -> f32
             return light;
         }
         let texel = stack.fetch_nearest(layer, stack.middle(layer, uv, seen), seen);
-        let clear = libm::expf(-stack.gain(layer, seen) * slab_optical_depth(&texel, seen, stack.slab_m()));
+        let clear = libm::expf(-stack.gain(layer, seen) * slab_optical_depth(&texel, seen, stack.slab_m(layer)));
         light += through * (1.0 - clear) * texel.brightness;
         through *= clear;
     }

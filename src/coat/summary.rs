@@ -1,6 +1,6 @@
 //! What a coat holds and costs, in numbers.
 
-use crate::data::coat::{Coat, CoatPrimitive, Sampled, Tile};
+use crate::data::coat::{Coat, CoatPrimitive, Sampled, ShellStack, Tile};
 use crate::data::image::Image8;
 use serde::Serialize;
 
@@ -57,7 +57,23 @@ pub struct TileSummary {
     /// Distance, m, at which neighbouring shells seen from the side are 2 pixels apart on a screen 1080 pixels high with
     /// a vertical field of view of 40°; nearer than that, layers can be told apart.
     pub gap_distance_m: f64,
-    /// Graphics memory of its textures, uncompressed.
+    /// Its levels of detail, the finest first.
+    pub levels: Vec<LevelSummary>,
+    /// Graphics memory of its textures, those of all levels, uncompressed.
+    pub vram_bytes: usize,
+}
+
+/// A level of detail in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LevelSummary {
+    /// Layers, the opaque skin included.
+    pub layers: u32,
+    /// Texels along an edge.
+    pub texture_size: u32,
+    /// How high the longest hair is in a picture, pixels, up to which it suffices; none of the finest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub most_px: Option<f32>,
+    /// Graphics memory of its shells' textures, uncompressed.
     pub vram_bytes: usize,
 }
 
@@ -129,7 +145,15 @@ fn uv_area(coat_primitive: &CoatPrimitive) -> f64 {
 fn tile(tile: &Tile, used: f64) -> TileSummary {
     let shells = &tile.shells;
     let bytes = |images: &mut dyn Iterator<Item = &Image8>| images.map(|image| image.pixels.len()).sum::<usize>();
-    let mut stacks = shells.albedo.iter().chain(&shells.medium).chain(&shells.ends).flatten();
+    let level = |stack: &ShellStack, most_px| LevelSummary {
+        layers: stack.layers,
+        texture_size: stack.size,
+        most_px,
+        vram_bytes: bytes(&mut stack.albedo.iter().chain(&stack.medium).chain(&stack.ends).flatten()),
+    };
+    let coarser = tile.levels.iter().map(|coarser| level(&coarser.shells, Some(coarser.most_px)));
+    let levels: Vec<_> = std::iter::once(level(shells, None)).chain(coarser).collect();
+    let stacks = levels.iter().map(|level| level.vram_bytes).sum::<usize>();
     let gap_m = f64::from(tile.height_m) / f64::from(shells.layers.max(2) - 1);
     TileSummary {
         preset: tile.preset.clone(),
@@ -142,7 +166,8 @@ fn tile(tile: &Tile, used: f64) -> TileSummary {
         mips: shells.albedo.len(),
         fin_size: tile.fin.size,
         gap_distance_m: gap_m * SCREEN.0 / (GAP_PIXELS * 2.0 * (0.5 * SCREEN.1.to_radians()).tan()),
-        vram_bytes: bytes(&mut stacks) + bytes(&mut tile.fin.albedo.iter().chain(&tile.fin.tangent)),
+        vram_bytes: stacks + bytes(&mut tile.fin.albedo.iter().chain(&tile.fin.tangent)),
+        levels,
     }
 }
 

@@ -5,9 +5,12 @@ use super::hair::{TileHair, leaning};
 use super::shells::above::Above;
 use super::shells::deposit::{VoxelLayout, Voxels, mean_slopes};
 use super::shells::encode::{Raw, encode};
+use super::shells::heights::ByHeight;
 use super::shells::{ShellParameters, ends, gains, undercoat};
-use crate::data::coat::{Sampled, Tile, TileLooks};
+use crate::data::coat::{Level, Sampled, ShellStack, Tile, TileLooks};
+use crate::data::shell::Slabs;
 use crate::math::Vec3;
+use rayon::prelude::*;
 
 /// What is baked from a tile's hair.
 #[derive(Clone, Debug)]
@@ -43,50 +46,104 @@ pub(super) fn undercoat_shares(guard: &[f32], all: &[f32]) -> Vec<f32> {
         .collect()
 }
 
-/// Bakes the textures of a tile.
+/// Height of a level's stack in a picture, over its number of slabs, up to which they suffice, pixels.
+const PX_PER_SLAB: f32 = 3.0;
+/// Texels of a level for each pixel's edge of the largest picture that it suffices for.
+const TEXELS_PER_PX: f32 = 3.0;
+
+/// Slabs of a level up to which the skin below looks like its coat.
+const LIKE_SKIN: usize = 2;
+
+/// Bakes the textures of a tile and of its levels, each with half as many slabs as the one before, down to one.
 pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
-    let size = recipe.shells.texture_size as usize;
-    let slabs = recipe.shells.layers as usize - 1;
     let lean = leaning(recipe.lean_deg);
+    let counts = std::iter::successors(Some(recipe.shells.layers as usize - 1), |&n| (n > 1).then_some(n / 2));
+    let by_height = ByHeight::new(hair);
+    let cuts: Vec<Slabs> = counts.map(|count| by_height.cut(count)).collect();
     // The textures, the fin and the truth that gains are fitted to need nothing of each other.
-    let shells = || {
-        let slopes = mean_slopes(&hair.guard, slabs, hair.height_m);
-        let layout = VoxelLayout::tile(size, slabs, hair.edge_m, hair.height_m);
-        let mut voxels = Voxels::deposited(layout, &hair.guard, &slopes);
-        let mut kappa = ends::guard_ends(&hair.guard, &voxels, &slopes);
-        let guard = slab_means(&voxels.extinction, slabs);
-        if let Some(medium) = &hair.undercoat {
-            undercoat::add(medium, &slopes, &mut voxels, &mut kappa);
-        }
-        let above = Above::new(&layout, &voxels.extinction, 0, &[]);
-        let shells = encode(&Raw {
-            voxels: &voxels,
-            ends: &kappa,
-            above: &above,
-            skin: recipe.skin,
-            slopes: &slopes,
-            skin_share: &[],
-        });
-        let shares = undercoat_shares(&guard, &slab_means(&voxels.extinction, slabs));
-        (shells, slab_means(&above.voxels, slabs), shares)
+    let stacks = || {
+        cuts.par_iter()
+            .enumerate()
+            .map(|(level, cut)| stack(hair, &by_height, recipe, (level, cut)))
+            .collect::<Vec<_>>()
     };
     let truth = || {
         let mapped = hair.mapped(lean);
-        gains::seen_through(mapped.scene(), mapped.edge_m, mapped.height_m, slabs, lean)
+        gains::Truth::new(mapped.scene(), mapped.edge_m, mapped.height_m, &cuts, lean)
     };
     let fin = || texture::composite(hair, &recipe.fins);
-    let ((shells, slab_above, shares), (truth, fin)) = rayon::join(shells, || rayon::join(truth, fin));
+    let (mut stacks, (truth, fin)) = rayon::join(stacks, || rayon::join(truth, fin));
+    let own = stacks.remove(0);
     let mut tile = Tile {
         preset: recipe.preset.clone(),
         sampled: Sampled::Square,
         edge_m: hair.edge_m,
         height_m: hair.height_m,
-        shells,
-        fin: texture::encode(&fin, hair, &recipe.fins, &slab_above),
-        looks: recipe.looks(&shares),
+        fin: texture::encode(&fin, hair, &recipe.fins, (&own.shells.slabs, &own.slab_above)),
+        shells: own.shells,
+        levels: stacks.into_iter().map(Stacked::level).collect(),
+        looks: recipe.looks(&own.shares),
     };
-    tile.shells.gains = gains::fit(&tile, &truth, lean);
+    let gains: Vec<_> = (0..=tile.levels.len())
+        .into_par_iter()
+        .map(|level| gains::fit(&tile.at_level(level), &truth.of(&cuts[level]), lean))
+        .collect();
+    let stacks = std::iter::once(&mut tile.shells).chain(tile.levels.iter_mut().map(|level| &mut level.shells));
+    stacks.zip(gains).for_each(|(shells, gains)| shells.gains = gains);
     tile
+}
+
+/// A stack without gains, with its means per slab.
+struct Stacked {
+    shells: ShellStack,
+    /// Hair area above the middle.
+    slab_above: Vec<f32>,
+    /// Share of undercoat.
+    shares: Vec<f32>,
+}
+
+impl Stacked {
+    fn level(self) -> Level {
+        Level {
+            most_px: PX_PER_SLAB * self.shares.len() as f32,
+            undercoat_share: std::iter::once(0.0).chain(self.shares).collect(),
+            shells: self.shells,
+        }
+    }
+}
+
+/// The stack of a tile's hair in these slabs, with as many texels as its level needs.
+fn stack(hair: &TileHair, by_height: &ByHeight, recipe: &TileRecipe, (level, cut): (usize, &Slabs)) -> Stacked {
+    let slabs = cut.count();
+    let texels = TEXELS_PER_PX * PX_PER_SLAB * slabs as f32 * hair.edge_m / hair.height_m;
+    let finest = recipe.shells.texture_size as usize;
+    let size = if level == 0 { finest } else { (texels.ceil() as usize).next_power_of_two().clamp(4, finest) };
+    let slopes = mean_slopes(&hair.guard, cut, hair.height_m);
+    let layout = VoxelLayout::tile(size, cut.clone(), hair.edge_m, hair.height_m);
+    let mut voxels = Voxels::deposited(&layout, &hair.guard, &slopes);
+    let mut kappa = ends::guard_ends(&hair.guard, &voxels, &slopes);
+    let guard = slab_means(&voxels.extinction, slabs);
+    if let Some(medium) = &hair.undercoat {
+        undercoat::add(medium, &slopes, &mut voxels, &mut kappa);
+    }
+    for (colours, seen) in voxels.colour.chunks_mut(layout.texels()).zip(by_height.seen_over_mean(cut)) {
+        colours.iter_mut().for_each(|colour| *colour *= seen);
+    }
+    let mut above = Above::new(&layout, &voxels.extinction, 0, &[]);
+    let mut skin = recipe.skin;
+    if slabs <= LIKE_SKIN {
+        // What is seen of the skin between so few shells is as bright as they are: a thick coat, seen from afar.
+        above.skin.fill(0.0);
+        let top = (slabs - 1) * layout.texels()..;
+        let extinction = voxels.extinction[top.clone()].iter().sum::<f32>().max(f32::MIN_POSITIVE);
+        skin = voxels.colour[top].iter().sum::<Vec3>() / extinction;
+    }
+    let raw = Raw { voxels: &voxels, ends: &kappa, above: &above, skin, slopes: &slopes, skin_share: &[] };
+    Stacked {
+        shells: encode(&raw),
+        slab_above: slab_means(&above.voxels, slabs),
+        shares: undercoat_shares(&guard, &slab_means(&voxels.extinction, slabs)),
+    }
 }
 
 /// Mean of the values of each slab.

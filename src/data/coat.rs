@@ -2,8 +2,10 @@
 
 use super::image::Image8;
 use super::patches::Patches;
+use super::shell::Slabs;
 use super::texture::Texture;
 use crate::math::{Vec2, Vec3, Vec4};
+use std::borrow::Cow;
 
 /// Angles between ray and normal for which a gain is stored, degrees.
 pub const GAIN_ANGLES_DEG: [f32; 9] = [0.0, 10.0, 22.0, 35.0, 48.0, 60.0, 70.0, 79.0, 86.0];
@@ -45,8 +47,43 @@ pub struct Tile {
     pub shells: ShellStack,
     /// The fin texture.
     pub fin: FinTexture,
+    /// Coarser stacks of the same hair, each coarser than the one before, for pictures that show it small.
+    pub levels: Vec<Level>,
     /// How its hair is lit; none in a file of an earlier version, whose hair is that of the default fibre.
     pub looks: Option<TileLooks>,
+}
+
+/// A coarser stack of a tile's hair.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Level {
+    /// Its shells.
+    pub shells: ShellStack,
+    /// As [`TileLooks::undercoat_share`].
+    pub undercoat_share: Vec<f32>,
+    /// How high the longest hair is in a picture, pixels, up to which it suffices.
+    pub most_px: f32,
+}
+
+impl Tile {
+    /// This tile with the shells of a level alone, 0 being its own.
+    pub fn at_level(&self, level: usize) -> Cow<'_, Self> {
+        let Some(coarse) = level.checked_sub(1).and_then(|i| self.levels.get(i)) else { return Cow::Borrowed(self) };
+        let undercoat_share = coarse.undercoat_share.clone();
+        Cow::Owned(Self {
+            preset: self.preset.clone(),
+            sampled: self.sampled,
+            edge_m: self.edge_m,
+            height_m: self.height_m,
+            shells: coarse.shells.clone(),
+            levels: Vec::new(),
+            fin: self.fin.clone(),
+            looks: self.looks.as_ref().map(|looks| TileLooks {
+                of: looks.of,
+                crowding: looks.crowding,
+                undercoat_share,
+            }),
+        })
+    }
 }
 
 /// Quadruples of numbers of a look: `Look` of `shaders/shared/look.wgsl` says which is which.
@@ -63,14 +100,15 @@ pub struct TileLooks {
     pub undercoat_share: Vec<f32>,
 }
 
-/// Shells over the opaque skin (layer 0): `layers − 1` slabs of equal height. Slab i ∈ 1 … layers−1 spans heights
-/// (i−1)/(layers−1) … i/(layers−1) of the stack and is drawn at its top.
+/// Shells over the opaque skin (layer 0): `layers − 1` slabs, of which that of layer i is drawn at its top.
 ///
 /// The law that gives a slab's opacity (`docs/steps/shells.md`): τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], α = 1 − e^−τ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShellStack {
     /// Layers with the skin: textures have this many array layers.
     pub layers: u32,
+    /// Where they lie; `layers` − 1 of them.
+    pub slabs: Slabs,
     /// Texels along an edge of mip 0; a power of two.
     pub size: u32,
     /// Per mip and layer (`[mip][layer]`): gains g at [`GAIN_ANGLES_DEG`]. The skin's mean nothing.

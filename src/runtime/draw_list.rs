@@ -119,6 +119,8 @@ pub struct Frame {
     pub ambient: Vec3,
     /// Whether the key light, the first, casts the shadow of one limb on another.
     pub shadow_map: bool,
+    /// Level of detail of all coats, 0 being the finest, or the coarsest there is; none to choose by size.
+    pub level: Option<usize>,
     /// Whether the picture's depths are those of the nearest hair too, which takes a further pass; else of the skin alone.
     pub depths: bool,
 }

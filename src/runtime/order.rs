@@ -1,5 +1,6 @@
 //! In which order a coat is drawn: from back to front.
 
+use super::detail::Detail;
 use super::draw_list::{Frame, Show};
 use super::sight::{Eye, Sighted};
 use bytemuck::{Pod, Zeroable};
@@ -46,6 +47,8 @@ pub struct Run {
     pub fins: bool,
     /// Which of the coats.
     pub fur: usize,
+    /// Which of its tile's levels.
+    pub level: usize,
     /// Which of its tile's looks.
     pub look: usize,
     /// Which items.
@@ -57,12 +60,16 @@ pub struct Run {
 pub struct Order {
     /// All items.
     pub items: Vec<Item>,
-    /// Neighbours of one kind, coat and look.
+    /// Neighbours of one kind, coat, level and look.
     pub runs: Vec<Run>,
+    /// Which levels are drawn of each coat.
+    pub details: Vec<Detail>,
+    /// Height of the longest hair in the picture, pixels.
+    pub height_px: f32,
 }
 
 /// Where an item comes: steps from the furthest on; within one the far side from its outermost layer, whose rank is minus its number,
-/// fins at 0, the near side at twice their numbers; then coats.
+/// fins at 0, the near side at twice their numbers (of the finest level; a coarser one's count for as many more); then coats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Place {
     step: i32,
@@ -70,6 +77,7 @@ struct Place {
     turn: u32,
     item: Item,
     fur: u32,
+    level: usize,
     fins: bool,
 }
 
@@ -85,71 +93,79 @@ impl Order {
         let half_edge_m = furs.iter().map(|fur| 0.5 * fur.edge_m).fold(f32::MIN_POSITIVE, f32::max);
         let step =
             |away_m: f32, rank: i32| (rank as f32 - away_m / half_edge_m).clamp(-MOST_STEPS, MOST_STEPS).floor() as i32;
+        let heights_px: Vec<f32> = furs.iter().map(|fur| fur.height_px(&eye)).collect();
+        let details: Vec<Detail> =
+            furs.iter().zip(&heights_px).map(|(fur, &height_px)| fur.detail(height_px, frame.level)).collect();
+        let height_px = heights_px.into_iter().fold(0.0, f32::max);
         let mut places = Vec::new();
-        for (number, fur) in furs.iter().enumerate() {
+        for ((number, fur), detail) in furs.iter().enumerate().zip(&details) {
             // Of two coats in one place each is drawn over the other in every other layer.
             let turn = |layer: u32| match layer % 2 {
                 1 if fur.over_last => number as u32 - 1,
                 1 if furs.get(number + 1).is_some_and(|next| next.over_last) => number as u32 + 1,
                 _ => number as u32,
             };
-            let place = |away_m: f32, rank: i32, fins: bool, item: Item| Place {
+            let place = |away_m: f32, rank: i32, (level, fins): (usize, bool), item: Item| Place {
                 step: step(away_m, rank),
                 rank,
                 turn: turn(item.layer()),
                 item,
                 fur: number as u32,
+                level,
                 fins,
             };
-            if show.shells {
+            for level in detail.levels().map(|(level, _)| level).filter(|_| show.shells) {
+                let sight = &fur.levels[level];
+                let per_layer = (fur.levels[0].layers() - 1) as f32 / (sight.layers() - 1) as f32;
                 places.par_extend((0..fur.triangles.len()).into_par_iter().flat_map_iter(|index| {
-                    let seen = move |layer| Some((layer, fur.slab(&eye, index, layer)?));
-                    (1..fur.layers).filter_map(seen).map(move |(layer, seen)| {
-                        let rank = if seen.far { -(layer as i32) } else { 2 * layer as i32 };
+                    let seen = move |layer| Some((layer, fur.slab(&eye, sight, index, layer)?));
+                    (1..sight.layers()).filter_map(seen).map(move |(layer, seen)| {
+                        let rank = (layer as f32 * per_layer * if seen.far { -1.0 } else { 2.0 }) as i32;
                         let item = Item::slab(index, layer, seen.far);
-                        place(seen.away_m, rank, false, item)
+                        place(seen.away_m, rank, (level, false), item)
                     })
                 }));
             }
-            if show.fins {
+            if show.fins && detail.fins() > 0.0 {
                 places.par_extend(fur.fins.par_iter().enumerate().filter_map(|(index, fin)| {
                     let item = Item { index: index as u32, ..Item::default() };
-                    Some(place(fur.fin(&eye, fin)?, 0, true, item))
+                    Some(place(fur.fin(&eye, fin)?, 0, (0, true), item))
                 }));
             }
         }
         places.par_sort_unstable();
-        let mut order = Self::default();
+        let mut order = Self { details, height_px, ..Self::default() };
         for place in places {
             let fur = place.fur as usize;
             // What stands out as fins is guard hair.
-            let look = if place.fins { 0 } else { furs[fur].looks[place.item.layer() as usize] };
-            order.push(place.fins, fur, look, place.item);
+            let look = if place.fins { 0 } else { furs[fur].levels[place.level].looks[place.item.layer() as usize] };
+            order.push(place.fins, (fur, place.level), look, place.item);
         }
         order
     }
 
-    /// All slabs of every coat that face the eye, or its skin alone, in no order.
+    /// All slabs of every coat's finest level that face the eye, or its skin alone, in no order.
     pub fn all(furs: &[&Sighted], frame: &Frame, samples: u32, skin: bool) -> Self {
-        let mut order = Self::default();
+        let mut order = Self { details: vec![Detail::default(); furs.len()], ..Self::default() };
         let eye = Eye::of(frame, samples);
         for (number, fur) in furs.iter().enumerate() {
+            let sight = &fur.levels[0];
             for index in 0..fur.triangles.len() {
-                let layers = if skin { 0..1 } else { 1..fur.layers };
-                for layer in layers.filter(|&layer| fur.faces(&eye, index, layer)) {
-                    order.push(false, number, 0, Item::slab(index, layer, false));
+                let layers = if skin { 0..1 } else { 1..sight.layers() };
+                for layer in layers.filter(|&layer| fur.faces(&eye, sight, index, layer)) {
+                    order.push(false, (number, 0), 0, Item::slab(index, layer, false));
                 }
             }
         }
         order
     }
 
-    fn push(&mut self, fins: bool, fur: usize, look: usize, item: Item) {
+    fn push(&mut self, fins: bool, (fur, level): (usize, usize), look: usize, item: Item) {
         let end = self.items.len() as u32;
         self.items.push(item);
-        match self.runs.last_mut().filter(|run| (run.fins, run.fur, run.look) == (fins, fur, look)) {
+        match self.runs.last_mut().filter(|run| (run.fins, run.fur, run.level, run.look) == (fins, fur, level, look)) {
             Some(run) => run.items.end = end + 1,
-            None => self.runs.push(Run { fins, fur, look, items: end..end + 1 }),
+            None => self.runs.push(Run { fins, fur, level, look, items: end..end + 1 }),
         }
     }
 }

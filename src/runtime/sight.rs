@@ -1,6 +1,7 @@
 //! What of a coat can be seen from somewhere: triangles of shells that neither the skin nor the hair before them surely hides, and fins
 //! that count.
 
+use super::detail::Detail;
 use super::draw_list::Frame;
 use crate::data::shell::gain_at;
 use crate::math::{Vec3, Vec4};
@@ -76,8 +77,28 @@ pub struct Point {
 pub struct Before {
     /// Hair area above the layer's top times gain, in the mean of the tile, at [`GAIN_ANGLES_DEG`](crate::data::coat::GAIN_ANGLES_DEG).
     pub above_top: [f32; 9],
-    /// Height over which the hair area above falls to 1/e, slabs.
-    pub scale_slabs: f32,
+    /// Height over which the hair area above falls to 1/e, over the stack's.
+    pub scale: f32,
+}
+
+/// One level of a tile as far as sight goes.
+#[derive(Clone, Debug)]
+pub struct LevelSight {
+    /// Height of each layer's top over the stack's, the skin's first.
+    pub tops: Vec<f32>,
+    /// Of each layer, the skin counted; empty where hair of a tile's mean does not stand everywhere, and so hides nothing for sure.
+    pub before: Vec<Before>,
+    /// Which look each layer has.
+    pub looks: Vec<usize>,
+    /// Height of the stack up to which it suffices, pixels.
+    pub most_px: f32,
+}
+
+impl LevelSight {
+    /// Layers, the skin counted.
+    pub fn layers(&self) -> u32 {
+        self.tops.len() as u32
+    }
 }
 
 /// A coat as far as sight goes.
@@ -91,12 +112,8 @@ pub struct Sighted {
     pub fins: Vec<([u32; 2], f32)>,
     /// Height of the tile's stack, m.
     pub height_m: f32,
-    /// Of each layer, the skin counted; empty where hair of a tile's mean does not stand everywhere, and so hides nothing for sure.
-    pub before: Vec<Before>,
-    /// Which look each layer has.
-    pub looks: Vec<usize>,
-    /// Layers, the skin counted.
-    pub layers: u32,
+    /// The stacks that the tile has of it, the finest first.
+    pub levels: Vec<LevelSight>,
     /// Length of an edge of its outermost shell, m: the median.
     pub edge_m: f32,
     /// As [`CoatMesh::over_last`](super::draw_list::CoatMesh::over_last).
@@ -113,6 +130,22 @@ pub struct Seen {
 }
 
 impl Sighted {
+    /// How high the longest hair is in the picture, seen from the side at the middle of the coat, pixels.
+    pub fn height_px(&self, eye: &Eye) -> f32 {
+        let furred = || self.points.iter().filter(|point| point.offset_m != Vec3::ZERO);
+        let hair_m = furred().map(|point| point.offset_m.length()).fold(0.0, f32::max);
+        let middle_m = furred().map(|point| point.position_m).sum::<Vec3>() / furred().count().max(1) as f32;
+        hair_m / eye.pixel_m(middle_m, 0.0).max(f32::MIN_POSITIVE)
+    }
+
+    /// Which levels are drawn: one that is given, or the coarsest there is, else by how high the longest hair is.
+    pub fn detail(&self, height_px: f32, level: Option<usize>) -> Detail {
+        match level {
+            Some(level) => Detail::fixed(level.min(self.levels.len() - 1)),
+            None => Detail::of(height_px, self.levels[1..].iter().map(|level| level.most_px)),
+        }
+    }
+
     /// How far away a fin is, m, if it counts.
     pub fn fin(&self, eye: &Eye, &([start, end], per_m): &([u32; 2], f32)) -> Option<f32> {
         let [start, end] = [start, end].map(|v| self.points[v as usize]);
@@ -131,21 +164,21 @@ impl Sighted {
         (cos_view.abs() < 2.0 * edge_cos).then(|| eye.away_m(middle))
     }
 
-    /// Which side of a triangle of a layer is seen, if any.
-    pub fn slab(&self, eye: &Eye, triangle: usize, layer: u32) -> Option<Seen> {
+    /// Which side of a triangle of a level's layer is seen, if any.
+    pub fn slab(&self, eye: &Eye, level: &LevelSight, triangle: usize, layer: u32) -> Option<Seen> {
         let corners = self.corners(triangle);
-        let [a, b, c] = self.at_height(&corners, layer);
+        let [a, b, c] = at_height(&corners, level.tops[layer as usize]);
         let face = (b - a).cross(c - a);
-        if corners.iter().all(|p| p.offset_m == Vec3::ZERO) || self.out_of_sight(eye, &corners, layer, face) {
+        if corners.iter().all(|p| p.offset_m == Vec3::ZERO) || self.out_of_sight(eye, level, &corners, layer, face) {
             return None;
         }
         Some(Seen { far: !outside(eye, &corners, a, face), away_m: eye.away_m((a + b + c) / 3.0) })
     }
 
-    /// Whether a triangle of a layer faces the eye; one of the skin, layer 0, by its normals.
-    pub fn faces(&self, eye: &Eye, triangle: usize, layer: u32) -> bool {
+    /// Whether a triangle of a level's layer faces the eye; one of the skin, layer 0, by its normals.
+    pub fn faces(&self, eye: &Eye, level: &LevelSight, triangle: usize, layer: u32) -> bool {
         let corners = self.corners(triangle);
-        let [a, b, c] = self.at_height(&corners, layer);
+        let [a, b, c] = at_height(&corners, level.tops[layer as usize]);
         if layer == 0 {
             // Hair that leans behind its skin counts as missing.
             return corners.iter().map(|p| p.normal).sum::<Vec3>().dot(eye.ray(a)) < 0.0;
@@ -157,14 +190,9 @@ impl Sighted {
         self.triangles[triangle].map(|v| self.points[v as usize])
     }
 
-    fn at_height(&self, corners: &[Point; 3], layer: u32) -> [Vec3; 3] {
-        let height = layer as f32 / (self.layers - 1) as f32;
-        corners.map(|p| p.position_m + p.offset_m * height)
-    }
-
     /// Whether hair before a triangle of a layer, or the skin, surely hides it. The coat goes on around it as far as the eye's ray runs
     /// through it, or what is seen of it from the side at a border would be missing.
-    fn out_of_sight(&self, eye: &Eye, corners: &[Point; 3], layer: u32, face: Vec3) -> bool {
+    fn out_of_sight(&self, eye: &Eye, level: &LevelSight, corners: &[Point; 3], layer: u32, face: Vec3) -> bool {
         let least = |of: fn(&Point) -> f32| corners.iter().map(of).fold(f32::INFINITY, f32::min);
         let offset_m = corners.iter().map(|p| p.offset_m).sum::<Vec3>() / 3.0;
         let hair_m = offset_m.length();
@@ -180,19 +208,23 @@ impl Sighted {
         // The stronger of both curvatures is no more than their sum, where neither is hollow.
         let most_bend = corners.iter().map(|p| p.bend_per_m).fold(0.0, f32::max);
         let bend_per_m = 0.5 * most_bend * (1.0 - rise * rise);
-        let slab_m = upright_m / (self.layers - 1) as f32;
         if rise < 0.0 {
             // The body is before it, unless its skin bends away sooner.
-            return rise * rise >= 4.0 * bend_per_m * slab_m * layer as f32;
+            return rise * rise >= 4.0 * bend_per_m * upright_m * level.tops[layer as usize];
         }
-        let Some(before) = self.before.get(layer as usize) else { return false };
+        let Some(before) = level.before.get(layer as usize) else { return false };
         let along = offset_m.dot(to_eye) / hair_m;
         let above_top = gain_at(&before.above_top, along.clamp(0.0, 1.0).acos().to_degrees());
         let area = above_top * least(|p| p.density) * hair_m / self.height_m * (1.0 - along * along).max(0.0).sqrt();
         // As `way_up` of shaders/shared/shading.wgsl.
-        let bent = 16.0 / std::f32::consts::PI * bend_per_m * before.scale_slabs * slab_m;
+        let bent = 16.0 / std::f32::consts::PI * bend_per_m * before.scale * upright_m;
         area * 2.0 / (rise + (rise * rise + bent).sqrt()) > UNSEEN
     }
+}
+
+/// A triangle at a height over the stack's.
+fn at_height(corners: &[Point; 3], height: f32) -> [Vec3; 3] {
+    corners.map(|p| p.position_m + p.offset_m * height)
 }
 
 /// Whether a triangle at a height, with a corner `at` and a normal `face` of either direction, is seen from outside. Which side that is

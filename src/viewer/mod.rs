@@ -3,7 +3,8 @@
 pub mod bald;
 pub mod chart;
 pub mod cost;
-pub mod occluder;
+mod notes;
+mod occluder;
 pub mod sitting;
 pub mod stage;
 pub mod subject;
@@ -47,6 +48,8 @@ pub struct ViewOptions {
     pub count: bool,
     /// Whether depths are those of hair too, which takes a further pass; else of the skin alone.
     pub depths: bool,
+    /// Level of detail, 0 being the finest, or the coarsest there is; none to choose by size.
+    pub level: Option<usize>,
     /// A thing beside the asset, in its units and axes. It is no part of what the camera is framed for.
     pub occluder: Option<Asset>,
 }
@@ -61,6 +64,7 @@ impl Default for ViewOptions {
             samples: 1,
             shadow_map: true,
             depths: false,
+            level: None,
             count: false,
             occluder: None,
         }
@@ -269,7 +273,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
     let marked = (options.show == Shown::Bald).then(|| bald::marked(&scene));
     let mut over_skin = marked.as_ref().map(|marked| renderer.prepare(marked)).transpose()?;
     let mut pictures = Vec::with_capacity(viewpoints.len());
-    let mut notes = Vec::new();
+    let mut notes: Vec<String> = notes::coarsest(coat, options.level).into_iter().collect();
     for viewpoint in viewpoints {
         let start = Instant::now();
         let camera = viewpoint.camera(&subject, stage.aspect())?;
@@ -286,11 +290,12 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
         let view = Frame {
             shadow_map: options.shadow_map && !charted,
             depths: options.depths,
+            level: options.level,
             ..sitting::frame(&camera, origin_m, &points_m, stage.size, lit)
         };
         recorder.row("draw: camera and light", ms_since(start), 0);
         let (mut picture, shadow) = draw(&mut prepared, &view, show, &mut recorder)?;
-        notes.extend(note(shadow).filter(|new| !notes.contains(new)));
+        notes.extend(notes::shadow(shadow).filter(|new| !notes.contains(new)));
         if let Some(over_skin) = &mut over_skin {
             let hair = recorder.step("hair over skin", || over_skin.hair_over_skin(&view), |_| 0)?;
             picture = bald::picture(&hair, &picture);
@@ -349,21 +354,9 @@ fn draw(
     // Where the adapter has no clock, all of the passes stands here.
     recorder.row("draw: wait and read back", ms_since(start) - on_device, drawn.target_bytes);
     recorder.count("pictures", 1);
+    recorder.mean("level", f64::from(drawn.level));
+    recorder.mean("height_px", f64::from(drawn.height_px));
     Ok((drawn.picture, drawn.shadow))
-}
-
-/// What a user should know of the shadow.
-fn note(shadow: KeyShadow) -> Option<String> {
-    let text = match shadow {
-        KeyShadow::Off | KeyShadow::Cast { guests_reach: true } => return None,
-        KeyShadow::Cast { guests_reach: false } => {
-            "the occluder casts no shadow on the asset: seen from the key light it lies beside it, behind it or out of reach"
-        }
-        KeyShadow::TooNear => {
-            "the key light stands within the asset or close beside it: no limb casts its shadow on another"
-        }
-    };
-    Some(text.to_owned())
 }
 
 fn ms_since(start: Instant) -> f64 {

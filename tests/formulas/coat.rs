@@ -5,16 +5,16 @@ use crate::coats;
 use furrier::coat::axes::Stand;
 use furrier::data::coat::Tile;
 use furrier::data::shell::guards::{FADE_BELOW, LEAST_COSINE, MOST_TAPS};
-use furrier::data::shell::{Filled, HairMedium, Incidence, MOST_ABOVE, Stack, closeness, depth_of_opacity};
+use furrier::data::shell::{Filled, HairMedium, Incidence, MOST_ABOVE, Slabs, Stack, closeness, depth_of_opacity};
 use furrier::gpu::{Binding, Gpu, Source, Text};
 use furrier::math::{DVec2, Mat3, Mat4, Vec2, Vec3, Vec4, orthonormal_basis};
 use furrier::runtime::Frame;
-use furrier::runtime::gpu::layout::{Mip, TileUniform, ViewUniform};
+use furrier::runtime::gpu::layout::{Mip, SlabItem, TileUniform, ViewUniform};
 use furrier::runtime::gpu::pipelines::SHARED;
 
 /// Vectors per input, in and out.
 const INPUTS: usize = 11;
-const OUTPUTS: usize = 9;
+const OUTPUTS: usize = 10;
 
 /// Evaluates the law at what the inputs say.
 pub const MAIN: Source = Source {
@@ -25,7 +25,7 @@ pub const MAIN: Source = Source {
 #import furrier::view::ray_direction
 #import furrier::coat::{Medium, Ray, frame, hair_frame, ray_in_tile, lateral, across, path_through_slab, gain, presence,
     run_through_slab, depth_of_opacity, fin_share, footprint, medium_of, root_of, filled_slab, closeness,
-    area_above, seen_at, thinned, at_outline, nearness}
+    area_above, seen_at, seen_above, thinned, at_outline, nearness}
 
 @group(2) @binding(0) var<storage, read> inputs: array<vec4<f32>>;
 @group(2) @binding(1) var<storage, read_write> outputs: array<vec4<f32>>;
@@ -63,7 +63,7 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     let root = root_of(chance, 0.2 + chance.z);
     let filled = filled_slab(1u + u32(6.99 * chance.w), chance.x);
 
-    let first = 9u * id.x;
+    let first = 10u * id.x;
     outputs[first] = vec4(straight.direction, straight.cosine);
     outputs[first + 1u] = vec4(seen.direction, hair.volume);
     outputs[first + 2u] = vec4(lateral(hair, ray, medium), across(hair, ray, medium), seen_at(chance.x * 4.0), texture.volume);
@@ -73,6 +73,7 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     outputs[first + 6u] = vec4(spot.round_level, stored.extinction, stored.tangent.x, dot(ray_direction(light), normal));
     outputs[first + 7u] = vec4(f32(filled.layer), filled.slab_m, filled.slabs, closeness(chance.x, chance.y));
     outputs[first + 8u] = vec4(root.density, root.share, area_above(opacity), thinned(opacity, 2.0 * chance.y));
+    outputs[first + 9u] = vec4(seen_above(chance.x * 4.0, chance.y * 8.0), 0.0, 0.0, 0.0);
 }
 ",
     ),
@@ -81,6 +82,9 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
 /// A tile whose gains are by chance.
 pub fn gained(layers: u32, size: u32) -> Tile {
     let mut tile = coats::tile(&coats::fox()[..1], 0.008, layers, size, 3);
+    // The lowest slab is the highest, as in a dense coat.
+    let top = |layer: u32| if layer == 0 { 0.0 } else { 0.3 + 0.65 * layer as f32 / (layers - 1) as f32 };
+    tile.shells.slabs = Slabs::with_tops((0..layers).map(top).collect()).expect("tops rise");
     let mut stream = furrier::math::hash::Stream::new(21);
     tile.shells.gains.iter_mut().flatten().flatten().for_each(|gain| *gain = 0.5 + stream.unit());
     tile
@@ -96,11 +100,11 @@ pub fn groups(gpu: &Gpu, tile: &Tile) -> [Group<'static>; 2] {
         ambient: Vec3::ZERO,
         shadow_map: false,
         depths: false,
+        level: None,
     };
-    let slopes = vec![[0.0_f32; 2]; tile.shells.layers as usize];
     let tables = vec![
         gpu.buffer("tile", &[TileUniform::new(tile)], wgpu::BufferUsages::UNIFORM),
-        gpu.buffer("slopes", &slopes, wgpu::BufferUsages::STORAGE),
+        gpu.buffer("slabs", &SlabItem::of(&tile.shells), wgpu::BufferUsages::STORAGE),
         gpu.buffer("mips", &Mip::of(tile), wgpu::BufferUsages::STORAGE),
     ];
     let view = gpu.buffer("view", &[ViewUniform::new(&frame, None)], wgpu::BufferUsages::UNIFORM);
@@ -250,17 +254,20 @@ pub fn law(shared: &[Source]) -> Vec<String> {
         }
         let chance = of(i)[0];
         worst.note(i, "where a slab is seen", out[2].z, reference::seen_at(f64::from(chance.x) * 4.0) as f32);
+        let [depth, area] = [f64::from(chance.x) * 4.0, f64::from(chance.y) * 8.0];
+        worst.note(i, "hair above what is seen", out[9].x, reference::seen_above(depth, area) as f32);
         worst.note(i, "hair area above", out[8].z / MOST_ABOVE, (1.0 - opacity(i)).powi(2));
         let thinned = reference::thinned(opacity(i).into(), f64::from(chance.y) * 2.0);
         worst.note(i, "opacity of thinned hair", out[8].w, thinned as f32);
-        let filled = Filled::new(1 + (6.99 * chance.w) as u32, chance.x, tile.shells.layers, tile.height_m);
+        let filled = Filled::new(1 + (6.99 * chance.w) as u32, chance.x, &tile.shells.slabs, tile.height_m);
         // Where a slab just ends at a layer, roundings decide which it is.
-        let middle = ((6.99 * chance.w).floor()) / chance.x + 0.5 * filled.slabs;
-        if (middle - middle.round()).abs() > 1e-3 {
+        let [bottom, _] = tile.shells.slabs.span((6.99 * chance.w) as usize);
+        let middle = bottom / chance.x + 0.5 * filled.slab_m / tile.height_m;
+        if tile.shells.slabs.tops().iter().all(|top| (top - middle).abs() > 1e-4) {
+            worst.note(i, "slabs filled", out[7].z / 8.0, filled.slabs / 8.0);
             worst.note(i, "layer of a filled slab", out[7].x / 8.0, filled.layer as f32 / 8.0);
         }
         worst.note(i, "filled slab", out[7].y / tile.height_m, filled.slab_m / tile.height_m);
-        worst.note(i, "slabs filled", out[7].z / 8.0, filled.slabs / 8.0);
         worst.note(i, "closeness", out[7].w, closeness(chance.x, chance.y));
         worst.note(i, "density at the root", out[8].x, chance.x);
         worst.note(i, "length at the root", out[8].y, (chance.y / (0.2 + chance.z)).min(1.0));

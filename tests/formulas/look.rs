@@ -96,6 +96,7 @@ fn frame(ray: Vec3) -> Frame {
         ambient: Vec3::new(0.2, 0.3, 0.4),
         shadow_map: false,
         depths: false,
+        level: None,
     }
 }
 

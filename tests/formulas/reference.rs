@@ -131,6 +131,18 @@ pub fn seen_at(depth: f64) -> f64 {
     sum / weights
 }
 
+/// Share of a slab's hair that darkens what lies at its bottom as much as the slab darkens what is seen of it, by sums.
+pub fn seen_above(depth: f64, area: f64) -> f64 {
+    let n = 4000;
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for at in (0..n).map(|i| (f64::from(i) + 0.5) / f64::from(n)) {
+        let weight = (-depth * at).exp();
+        sum += weight * (-area * at).exp();
+        weights += weight;
+    }
+    -(sum / weights).ln() / area
+}
+
 /// Opacity of `amount` times as much hair: that part of it, or as many layers of it.
 pub fn thinned(opacity: f64, amount: f64) -> f64 {
     if amount < 1.0 { amount * opacity } else { 1.0 - (1.0 - opacity).max(LEAST_CLEAR.into()).powf(amount) }

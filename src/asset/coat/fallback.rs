@@ -97,28 +97,29 @@ fn nearest_cut(coat_primitive: &CoatPrimitive, cut: &Cut, blend: &Blend, scale: 
     [of(first), into].into_iter().filter(any).collect()
 }
 
-/// Per tile, per shell: a material with the shell's texture.
-fn materials(document: &mut Document, coat: &Coat, count: u32) -> Result<Vec<Vec<usize>>> {
+/// Per tile, per shell: its height over the stack's, and a material with its texture.
+fn materials(document: &mut Document, coat: &Coat, count: u32) -> Result<Vec<Vec<(f32, usize)>>> {
     let sampler =
         document.push("samplers", json!({"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497}));
     let mut all = Vec::new();
     for tile in &coat.tiles {
         let mut of_tile = Vec::new();
-        for (shell, image) in flatten::shells(&tile.shells, tile.height_m, count).iter().enumerate() {
+        for (shell, (height, image)) in flatten::shells(&tile.shells, tile.height_m, count).iter().enumerate() {
             let view = document.push_view(&png(image)?, None);
             let name = format!("{} fur shell {}", tile.preset, shell + 1);
             let image = document.push("images", json!({"name": name, "mimeType": "image/png", "bufferView": view}));
             let texture = document.push("textures", json!({"sampler": sampler, "source": image}));
             // Blended, not masked: a mask at one half erases sparse outer shells. Where limbs cross, the skin still
             // hides what is behind it; only fringes may be drawn in the wrong order.
-            of_tile.push(document.push(
+            let material = document.push(
                 "materials",
                 json!({
                     "name": name,
                     "alphaMode": "BLEND",
                     "pbrMetallicRoughness": {"baseColorTexture": {"index": texture}, "metallicFactor": 0.0, "roughnessFactor": 1.0},
                 }),
-            ));
+            );
+            of_tile.push((*height, material));
         }
         all.push(of_tile);
     }
@@ -132,7 +133,7 @@ fn stack(
     asset: &Asset,
     part: &Part,
     coat_primitive: &CoatPrimitive,
-    materials: &[usize],
+    materials: &[(f32, usize)],
     tinted: bool,
 ) -> Result<Vec<Value>> {
     let whole = || Cut {
@@ -142,8 +143,8 @@ fn stack(
         coarse: false,
     };
     let cut = coat_primitive.cut.clone().unwrap_or_else(whole);
-    let (n, shells) = (cut.inside.len(), materials.len());
-    let vertices = || (0..shells).flat_map(|shell| (0..n).map(move |v| ((shell as f32 + 0.5) / shells as f32, v)));
+    let n = cut.inside.len();
+    let vertices = || materials.iter().flat_map(|&(height, _)| (0..n).map(move |v| (height, v)));
     let base = |v: u32| coat_primitive.base_vertex[v as usize] as usize;
     let mixed = |v: usize, of: &dyn Fn(u32) -> Vec3| -> Vec3 {
         let (corners, shares) = cut.inside[v];
@@ -212,7 +213,7 @@ fn stack(
     }
     let mirrored = part.mirrored();
     let mut primitives = Vec::new();
-    for (shell, material) in materials.iter().enumerate() {
+    for (shell, (_, material)) in materials.iter().enumerate() {
         let corner = |v: u32| v + (shell * n) as u32;
         let turned = |t: &[u32; 3]| if mirrored { [t[0], t[2], t[1]] } else { *t };
         let indices: Vec<u32> = cut.triangles.iter().flat_map(turned).map(corner).collect();

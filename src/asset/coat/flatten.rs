@@ -11,29 +11,33 @@ const VIEW_DEG: f32 = 30.0;
 /// Azimuths averaged over.
 const AZIMUTHS: u32 = 4;
 
-/// At most `count` images, inner to outer, each of several slabs in one: straight colour in sRGB coding and opacity.
-pub fn shells(stack: &ShellStack, height_m: f32, count: u32) -> Vec<Image8> {
+/// At most `count` images, inner to outer, each of several slabs in one: straight colour in sRGB coding and opacity. Before each the
+/// height that it belongs at, over the stack's.
+pub fn shells(stack: &ShellStack, height_m: f32, count: u32) -> Vec<(f32, Image8)> {
     let slabs = stack.layers - 1;
     let count = count.clamp(1, slabs);
-    let thickness_m = height_m / slabs as f32;
+    let thinnest = (0..slabs as usize).map(|slab| stack.slabs.thickness(slab)).fold(1.0, f32::min);
     let of_shell = |shell: u32| {
         let (first, last) = (shell * slabs / count + 1, (shell + 1) * slabs / count);
         let mut image = Image8::new(stack.size, stack.size, 4);
         for texel in 0..(stack.size * stack.size) as usize {
-            let colour = composite(stack, (first..=last).rev(), texel, thickness_m);
+            let colour = composite(stack, (first..=last).rev(), texel, height_m);
             image.pixels[4 * texel..][..4].copy_from_slice(&colour);
         }
-        image
+        // What is seen of a thick slab, which is so because no light comes to its bottom, is its top.
+        let seen = (first..=last).map(|slab| stack.slabs.thickness(slab as usize - 1).min(2.0 * thinnest)).sum::<f32>();
+        (stack.slabs.tops()[last as usize] - 0.5 * seen, image)
     };
     (0..count).map(of_shell).collect()
 }
 
 /// Slabs from the outermost, over one another.
-fn composite(stack: &ShellStack, slabs: impl Iterator<Item = u32>, texel: usize, thickness_m: f32) -> [u8; 4] {
+fn composite(stack: &ShellStack, slabs: impl Iterator<Item = u32>, texel: usize, height_m: f32) -> [u8; 4] {
     let (mut colour, mut plain, mut clear, mut n) = (Vec3::ZERO, Vec3::ZERO, 1.0, 0.0);
     for slab in slabs {
         let albedo = &stack.albedo[0][slab as usize].pixels[4 * texel..][..3];
         let albedo = Vec3::from_array([0, 1, 2].map(|i| linear_from_srgb(unorm(albedo[i]))));
+        let thickness_m = stack.slabs.thickness(slab as usize - 1) * height_m;
         let alpha = opacity(stack, slab as usize, texel, thickness_m);
         colour += clear * alpha * albedo;
         clear *= 1.0 - alpha;

@@ -5,6 +5,7 @@ mod flatten;
 mod parts;
 mod pool;
 mod read;
+mod shells;
 mod textures;
 mod write;
 

@@ -56,7 +56,7 @@ impl<'a> Ground<'a> {
 
     /// Adds the undercoat over a region's texels, each the mean over what of it is skin.
     pub fn add(&self, region: &ChartRegion, profile: &Profile, voxels: &mut Voxels, ends: &mut [f32]) {
-        let layout = voxels.layout;
+        let layout = voxels.layout.clone();
         let width = layout.size[0];
         let across = (2.0 * layout.texel_m / self.undercoat.detail_m()).ceil().clamp(1.0, MOST_PLACES) as usize;
         for y in 0..layout.size[1] {

@@ -274,7 +274,7 @@ impl Judge<'_> {
             let offsets = corners.map(|v| offset_over_height(fields, v));
             let uv = patches.triangles[t].map(|v| patches.uv[v as usize]);
             for layer in 1..tile.shells.layers as usize {
-                let height_m = (layer as f32 - 0.5) * self.stack.slab_m();
+                let height_m = self.stack.middle_m(layer);
                 let skin_m = mesh.corners_m(t);
                 let shell_m = [0, 1, 2].map(|i| skin_m[i] + offsets[i] * height_m);
                 let Some(b) = crossing(shell_m, ray, far_m) else { continue };
@@ -299,7 +299,7 @@ impl Judge<'_> {
                         corners.iter().zip(b.to_array()).map(|(&v, b)| fields.density[v] * b).sum::<f32>()
                     }
                 };
-                let slab_m = self.stack.slab_m();
+                let slab_m = self.stack.slab_m(layer);
                 let law = slab_optical_depth(&self.stack.fetch_middle(layer, at, &seen), &seen, slab_m);
                 let plain = slab_optical_depth(&self.stack.fetch_middle(layer, at, &above), &above, slab_m);
                 depths[0] += density * self.stack.gain(layer, &seen) * law;

@@ -12,6 +12,7 @@ use crate::coat::hair::{TileHair, leaning};
 use crate::coat::shells::above::Above;
 use crate::coat::shells::deposit::{VoxelLayout, Voxels, mean_slopes};
 use crate::coat::shells::encode::{Raw, encode};
+use crate::coat::shells::heights::ByHeight;
 use crate::coat::shells::undercoat::{self, Profile};
 use crate::coat::shells::{ends, gains};
 use crate::coat::tile::{TileRecipe, slab_means, undercoat_shares};
@@ -84,9 +85,9 @@ impl Thinned {
     }
 
     /// Voxels of it, and what its ends add.
-    fn deposit(&self, layout: VoxelLayout, strands: &Strands, slopes: &[Vec2]) -> (Voxels, Vec<f32>) {
-        let mut voxels = Voxels::new(layout);
-        let mut ends = vec![0.0; layout.texels() * layout.slabs];
+    fn deposit(&self, layout: &VoxelLayout, strands: &Strands, slopes: &[Vec2]) -> (Voxels, Vec<f32>) {
+        let mut voxels = Voxels::new(layout.clone());
+        let mut ends = vec![0.0; layout.texels() * layout.slabs.count()];
         ends::deposit_with_ends(strands, slopes, (self.width_m, self.thinning), &mut voxels, &mut ends);
         (voxels, ends)
     }
@@ -112,15 +113,16 @@ impl Filled {
 pub fn bake(skins: &[AtlasSkin<'_>], square: &Square, hair: [&Fibre; 2], recipe: &TileRecipe, seed: u64) -> Tile {
     let texel_m = square.edge_m / square.texels as f32;
     let guard = Thinned::new(hair[0], texel_m);
-    let slabs = recipe.shells.layers as usize - 1;
     let reference = Reference::new(skins, hair, &guard, recipe, texel_m, seed);
     let height_m = reference.hair.height_m;
+    let cut = reference.tile.shells.slabs.clone();
+    let slabs = cut.count();
     let layout =
-        VoxelLayout { toroidal: false, ..VoxelLayout::tile(square.texels as usize, slabs, square.edge_m, height_m) };
+        VoxelLayout { toroidal: false, ..VoxelLayout::tile(square.texels as usize, cut, square.edge_m, height_m) };
 
     let n = layout.texels();
     let mut all = Filled {
-        voxels: Voxels::new(layout),
+        voxels: Voxels::new(layout.clone()),
         ends: vec![0.0; n * slabs],
         above: Above { voxels: vec![0.0; n * slabs], skin: vec![0.0; n] },
     };
@@ -186,24 +188,25 @@ impl Reference {
         let across = (recipe.shells.tile_mm * 1e-3 / texel_m).ceil() as usize;
         let size = across.next_power_of_two().clamp(REFERENCE.0, REFERENCE.1);
         let edge_m = size as f32 * texel_m;
-        let slabs = recipe.shells.layers as usize - 1;
         let full = TileHair::grow(hair[0], hair[1], recipe.shells.tile_mm * 1e-3, seed);
+        let slabs = ByHeight::new(&full).cut(recipe.shells.layers as usize - 1);
         let mut thin = TileHair::grow(&guard.fibre, hair[1], edge_m, seed);
         thin.height_m = full.height_m;
         let lean = leaning(recipe.lean_deg);
         let truth = || {
             let mapped = full.mapped(lean);
-            gains::seen_through(mapped.scene(), mapped.edge_m, mapped.height_m, slabs, lean)
+            let cut = std::slice::from_ref(&slabs);
+            gains::Truth::new(mapped.scene(), mapped.edge_m, mapped.height_m, cut, lean).of(&slabs)
         };
         let stack = || {
-            let slopes = mean_slopes(&thin.guard, slabs, full.height_m);
-            let layout = VoxelLayout::tile(size, slabs, edge_m, full.height_m);
-            let (mut voxels, mut ends) = guard.deposit(layout, &thin.guard, &slopes);
-            let guard_means = slab_means(&voxels.extinction, slabs);
+            let slopes = mean_slopes(&thin.guard, &slabs, full.height_m);
+            let layout = VoxelLayout::tile(size, slabs.clone(), edge_m, full.height_m);
+            let (mut voxels, mut ends) = guard.deposit(&layout, &thin.guard, &slopes);
+            let guard_means = slab_means(&voxels.extinction, slabs.count());
             if let Some(medium) = &thin.undercoat {
                 undercoat::add(medium, &slopes, &mut voxels, &mut ends);
             }
-            let shares = undercoat_shares(&guard_means, &slab_means(&voxels.extinction, slabs));
+            let shares = undercoat_shares(&guard_means, &slab_means(&voxels.extinction, slabs.count()));
             (Filled::new(voxels, ends, 0, &[]), slopes, shares)
         };
         let along_skin = fins::grown(skins, hair, &full, combine(seed, 3));
@@ -218,7 +221,8 @@ impl Reference {
             slopes: &slopes,
             skin_share: &[],
         });
-        let fin = texture::encode(&fin, fin_hair, &recipe.fins, &slab_means(&filled.above.voxels, slabs));
+        let fin =
+            texture::encode(&fin, fin_hair, &recipe.fins, (&slabs, &slab_means(&filled.above.voxels, slabs.count())));
         let tile = Tile {
             preset: recipe.preset.clone(),
             sampled: Sampled::Square,
@@ -226,6 +230,7 @@ impl Reference {
             height_m: full.height_m,
             shells,
             fin,
+            levels: vec![],
             looks: recipe.looks(&shares),
         };
         let reach = |s: &Strands| {
@@ -261,14 +266,14 @@ impl Grown<'_> {
         let AtlasSkin { mesh, fields, patches, .. } = *self.skin;
         let margin = (reference.reach_m / layout.texel_m).ceil().min(FURTHEST) as u32 + 1;
         let region = ChartRegion::new(mesh, &self.topology, patches, own, square.texels, rectangle, margin);
-        let layout = VoxelLayout { size: region.size, ..*layout };
+        let layout = VoxelLayout { size: region.size, ..layout.clone() };
         let flat = flatten(&self.strands, &self.ranges, (mesh, fields), &region, layout.texel_m);
-        let (mut voxels, mut ends) = guard.deposit(layout, &flat, &reference.slopes);
+        let (mut voxels, mut ends) = guard.deposit(&layout, &flat, &reference.slopes);
         let skin_share: Vec<f32> = (0..layout.texels()).map(|i| skin_share(&region, i)).collect();
         // A texel's values are means over what of it is skin.
         for (i, share) in skin_share.iter().enumerate().filter(|(_, share)| **share > 0.0 && **share < 1.0) {
             let over = 1.0 / share.max(LEAST_SHARE);
-            for v in (0..layout.slabs).map(|slab| slab * layout.texels() + i) {
+            for v in (0..layout.slabs.count()).map(|slab| slab * layout.texels() + i) {
                 voxels.extinction[v] *= over;
                 voxels.tangent[v] *= over;
                 voxels.colour[v] *= over;
@@ -304,13 +309,13 @@ impl Chart {
     /// Copies the rectangle into the square.
     fn place(&self, all: &mut Filled, skin_share: &mut [f32]) {
         let [left, top, width, height] = self.rectangle.map(|n| n as usize);
-        let (from, to) = (self.filled.voxels.layout, all.voxels.layout);
+        let (from, to) = (self.filled.voxels.layout.clone(), all.voxels.layout.clone());
         for y in 0..height {
             let source = (y + self.margin) * from.size[0] + self.margin;
             let target = (top + y) * to.size[0] + left;
             skin_share[target..target + width].copy_from_slice(&self.skin_share[source..source + width]);
             all.above.skin[target..target + width].copy_from_slice(&self.filled.above.skin[source..source + width]);
-            for slab in 0..to.slabs {
+            for slab in 0..to.slabs.count() {
                 let (s, t) = (slab * from.texels() + source, slab * to.texels() + target);
                 let (own, voxels) = (&self.filled.voxels, &mut all.voxels);
                 voxels.extinction[t..t + width].copy_from_slice(&own.extinction[s..s + width]);

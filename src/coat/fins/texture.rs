@@ -9,7 +9,7 @@ use crate::data::coat::FinTexture;
 use crate::data::image::{Image8, srgb_from_linear, unorm8};
 use crate::data::ray::DepthRange;
 use crate::data::ray::Ray;
-use crate::data::shell::code_above;
+use crate::data::shell::{Slabs, code_above};
 use crate::math::Vec3;
 
 /// Rays per texel edge.
@@ -39,9 +39,14 @@ pub fn composite(hair: &TileHair, parameters: &FinParameters) -> Slab {
     Slab(pyramid(Level { width, height, texels: cast(hair, width, height, parameters.thickness_mm * 1e-3) }))
 }
 
-/// Codes a slab. `slab_above` is the shells' mean hair area above per slab, skin first; each row
+/// Codes a slab. `slab_above` is the shells' mean hair area above per slab of `slabs`; each row
 /// takes that of its height.
-pub fn encode(slab: &Slab, hair: &TileHair, parameters: &FinParameters, slab_above: &[f32]) -> FinTexture {
+pub fn encode(
+    slab: &Slab,
+    hair: &TileHair,
+    parameters: &FinParameters,
+    (slabs, slab_above): (&Slabs, &[f32]),
+) -> FinTexture {
     let levels = &slab.0;
     FinTexture {
         size: [parameters.texture_width, parameters.texture_height],
@@ -53,7 +58,7 @@ pub fn encode(slab: &Slab, hair: &TileHair, parameters: &FinParameters, slab_abo
             .map(|level| {
                 code(level, |t, row| {
                     let up = 1.0 - (row as f32 + 0.5) / level.height as f32;
-                    let slab = (up * slab_above.len() as f32) as usize;
+                    let slab = slabs.at(up);
                     let m = t.tangent.normalize_or(Vec3::Z) * (t.tangent.length() / t.alpha.max(1e-6)).min(1.0);
                     [signed8(m.x), signed8(m.y), signed8(m.z), code_above(slab_above[slab])]
                 })

@@ -23,18 +23,18 @@ impl Above {
         let area = |slab: usize| -> Vec<f32> {
             let own = &extinction[slab * n..(slab + 1) * n];
             if layout.toroidal {
-                return vec![own.iter().sum::<f32>() / n as f32 * layout.slab_m; n];
+                return vec![own.iter().sum::<f32>() / n as f32 * layout.slab_m(slab); n];
             }
             let share = |texel: usize| skin_share.get(texel).copied().unwrap_or(1.0);
             let weights: Vec<f32> = (0..n).map(share).collect();
             let weighted: Vec<f32> = own.iter().zip(&weights).map(|(own, weight)| own * weight).collect();
             let sums = box_sums(layout, &weighted, reach_texels);
             let over = box_sums(layout, &weights, reach_texels);
-            sums.iter().zip(&over).map(|(s, o)| if *o > 0.0 { s / o * layout.slab_m } else { 0.0 }).collect()
+            sums.iter().zip(&over).map(|(s, o)| if *o > 0.0 { s / o * layout.slab_m(slab) } else { 0.0 }).collect()
         };
-        let areas: Vec<Vec<f32>> = (0..layout.slabs).into_par_iter().map(area).collect();
+        let areas: Vec<Vec<f32>> = (0..layout.slabs.count()).into_par_iter().map(area).collect();
         let mut skin = vec![0.0; n];
-        let mut voxels = vec![0.0; n * layout.slabs];
+        let mut voxels = vec![0.0; n * layout.slabs.count()];
         for (slab, areas) in areas.iter().enumerate().rev() {
             for (texel, area) in areas.iter().enumerate() {
                 voxels[slab * n + texel] = skin[texel] + 0.5 * area;

@@ -1,5 +1,6 @@
 //! Strands into voxels: lateral extinction, mean tangent and colour of each slab's texels.
 
+use crate::data::shell::Slabs;
 use crate::data::strands::Strands;
 use crate::math::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -9,7 +10,7 @@ use std::ops::Range;
 const BATCHES: usize = 4;
 
 /// How voxels lie.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct VoxelLayout {
     /// Texels along x and y.
     pub size: [usize; 2],
@@ -18,16 +19,20 @@ pub struct VoxelLayout {
     /// Whether what leaves on one side comes in on the other, as on a tile; else it is gone.
     pub toroidal: bool,
     /// Slabs.
-    pub slabs: usize,
-    /// Height of one slab, m.
-    pub slab_m: f32,
+    pub slabs: Slabs,
+    /// Height of the stack, m.
+    pub height_m: f32,
 }
 
 impl VoxelLayout {
     /// A tile with `size` texels along its edge, its stack `height_m` high.
-    pub fn tile(size: usize, slabs: usize, edge_m: f32, height_m: f32) -> Self {
-        let (texel_m, slab_m) = (edge_m / size as f32, height_m / slabs as f32);
-        Self { size: [size, size], texel_m, toroidal: true, slabs, slab_m }
+    pub fn tile(size: usize, slabs: Slabs, edge_m: f32, height_m: f32) -> Self {
+        Self { size: [size, size], texel_m: edge_m / size as f32, toroidal: true, slabs, height_m }
+    }
+
+    /// Height of a slab, m.
+    pub fn slab_m(&self, slab: usize) -> f32 {
+        self.slabs.thickness(slab) * self.height_m
     }
 
     /// Texels of one slab.
@@ -62,7 +67,7 @@ pub struct Voxels {
 impl Voxels {
     /// Empty voxels.
     pub fn new(layout: VoxelLayout) -> Self {
-        let n = layout.texels() * layout.slabs;
+        let n = layout.texels() * layout.slabs.count();
         Self { layout, extinction: vec![0.0; n], tangent: vec![Vec3::ZERO; n], colour: vec![Vec3::ZERO; n] }
     }
 
@@ -75,18 +80,18 @@ impl Voxels {
 
     /// Strands deposited into empty voxels, a fixed number of batches side by side, so that the sums come
     /// out the same for any number of threads. See [`Self::deposit`].
-    pub fn deposited(layout: VoxelLayout, strands: &Strands, slopes: &[Vec2]) -> Self {
+    pub fn deposited(layout: &VoxelLayout, strands: &Strands, slopes: &[Vec2]) -> Self {
         let batch = strands.len().div_ceil(BATCHES).max(1);
         let batches: Vec<Self> = (0..BATCHES)
             .into_par_iter()
             .map(|b| {
-                let mut voxels = Self::new(layout);
+                let mut voxels = Self::new(layout.clone());
                 let range = (b * batch).min(strands.len())..((b + 1) * batch).min(strands.len());
                 voxels.deposit(strands, range, slopes);
                 voxels
             })
             .collect();
-        let mut sum = Self::new(layout);
+        let mut sum = Self::new(layout.clone());
         batches.iter().for_each(|voxels| sum.add(voxels));
         sum
     }
@@ -102,12 +107,12 @@ impl Voxels {
     /// Deposits the strands of `range`. Each segment goes where the mean strand through it, of slope `slopes[slab]`, crosses the slab's
     /// middle, spread over a square as wide as the hair (equal in area to its cross-section).
     fn deposit(&mut self, strands: &Strands, range: Range<usize>, slopes: &[Vec2]) {
-        let layout = self.layout;
+        let layout = self.layout.clone();
         for strand in range {
             segments(strands, strand, &layout, slopes, |segment| {
                 let width_m = segment.width_m(0.0);
                 let amount = segment.length_m * segment.diameter_m * segment.opacity;
-                let per_volume = amount / (layout.texel_m * layout.texel_m * layout.slab_m);
+                let per_volume = amount / (layout.texel_m * layout.texel_m * layout.slab_m(segment.slab));
                 splat(&layout, segment.at_m, width_m, per_volume, |texel, weight| {
                     self.put(segment, texel, weight);
                 });
@@ -154,6 +159,7 @@ pub fn segments(
     mut each: impl FnMut(&VoxelSegment),
 ) {
     let segments = strands.points_per_strand - 1;
+    let thinnest_m = (0..layout.slabs.count()).map(|slab| layout.slab_m(slab)).fold(f32::INFINITY, f32::min);
     let root_m = 2.0 * strands.root_radius_m[strand];
     for (i, pair) in strands.points_of_m(strand).windows(2).enumerate() {
         let along = pair[1] - pair[0];
@@ -161,15 +167,15 @@ pub fn segments(
         if direction == Vec3::ZERO {
             continue;
         }
-        let steps = (along.truncate().length() / (0.5 * layout.texel_m)).max(along.z.abs() / (0.25 * layout.slab_m));
+        let steps = (along.truncate().length() / (0.5 * layout.texel_m)).max(along.z.abs() / (0.25 * thinnest_m));
         let steps = steps.ceil().max(1.0);
         let taper_m = root_m * (1.0 - strands.profile.taper) / (steps * segments as f32);
         for step in 0..steps as usize {
             let t = (step as f32 + 0.5) / steps;
             let s = (i as f32 + t) / segments as f32;
             let at = pair[0] + along * t;
-            let slab = ((at.z / layout.slab_m) as usize).min(layout.slabs - 1);
-            let middle_m = (slab as f32 + 0.5) * layout.slab_m;
+            let slab = layout.slabs.at(at.z / layout.height_m);
+            let middle_m = layout.slabs.middle(slab) * layout.height_m;
             each(&VoxelSegment {
                 slab,
                 at_m: at.truncate() - slopes[slab] * (at.z - middle_m),
@@ -203,18 +209,19 @@ pub fn splat(layout: &VoxelLayout, at_m: Vec2, width_m: f32, amount: f32, mut ea
 }
 
 /// Mean slope (dx, dy)/dz of strands in each slab, weighted as their extinction; 0 where there is none.
-pub fn mean_slopes(strands: &Strands, slabs: usize, height_m: f32) -> Vec<Vec2> {
-    let slab_m = height_m / slabs as f32;
-    let mut sums = vec![Vec3::ZERO; slabs];
+pub fn mean_slopes(strands: &Strands, slabs: &Slabs, height_m: f32) -> Vec<Vec2> {
+    let mut sums = vec![Vec3::ZERO; slabs.count()];
     let segments = strands.points_per_strand - 1;
     for strand in 0..strands.len() {
         for (i, pair) in strands.points_of_m(strand).windows(2).enumerate() {
             let weight =
                 strands.root_radius_m[strand] * strands.profile.radius_factor((i as f32 + 0.5) / segments as f32);
             let (low, high) = (pair[0].z.min(pair[1].z), pair[0].z.max(pair[1].z));
-            let (first, last) = ((low / slab_m).max(0.0) as usize, (high / slab_m).max(0.0) as usize);
+            let (first, last) = (slabs.at(low / height_m), slabs.at(high / height_m));
             for (slab, sum) in sums.iter_mut().enumerate().take(last + 1).skip(first) {
-                let inside = (high.min((slab + 1) as f32 * slab_m) - low.max(slab as f32 * slab_m)).max(0.0);
+                let [bottom, top] = slabs.span(slab).map(|height| height * height_m);
+                let top = if slab + 1 == slabs.count() { top.max(high) } else { top };
+                let inside = (high.min(top) - low.max(bottom)).max(0.0);
                 *sum += (pair[1] - pair[0]) * (weight * inside / (high - low).max(1e-12));
             }
         }

@@ -59,7 +59,7 @@ pub fn encode(raw: &Raw<'_>) -> ShellStack {
             })
             .collect(),
     ];
-    for slab in 0..voxels.layout.slabs {
+    for slab in 0..voxels.layout.slabs.count() {
         let texel = |i: usize| {
             let v = slab * size * size + i;
             Texel {
@@ -77,6 +77,7 @@ pub fn encode(raw: &Raw<'_>) -> ShellStack {
     slopes.extend(raw.slopes);
     let mut stack = ShellStack {
         layers: layers.len() as u32,
+        slabs: voxels.layout.slabs.clone(),
         size: size as u32,
         gains: Vec::new(),
         slopes,

@@ -4,7 +4,7 @@ use crate::cast::Caster;
 use crate::cast::Geometry;
 use crate::cast::Rays;
 use crate::data::coat::{GAIN_ANGLES_DEG, Tile};
-use crate::data::shell::{Incidence, Stack};
+use crate::data::shell::{Incidence, Slabs, Stack};
 use crate::math::{Mat3, Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -44,34 +44,52 @@ fn along_edge(theta_deg: f32, n: usize) -> usize {
     if theta_deg == 0.0 { 3 * n } else { n }
 }
 
-/// What is seen through strands mapped by `skin_from_tile`, which reach up to `top_m` there: mean transmittance at each of
-/// [`GAIN_ANGLES_DEG`] (in the tile) from outside to the bottom of each of `slabs` slabs, the lowest first.
-pub fn seen_through(scene: Geometry<'_>, edge_m: f32, top_m: f32, slabs: usize, skin_from_tile: Mat3) -> [Vec<f64>; 9] {
-    let caster = Caster::new(scene);
-    let mean = |theta: f32, rays: usize| {
-        let mut mean = vec![0.0; slabs];
-        let around: Vec<Vec3> = directions(theta).map(|in_tile| (skin_from_tile * in_tile).normalize()).collect();
-        for &direction in &around {
-            let n = along_edge(theta, rays);
-            let rays = Rays::Tile { edge_m, top_m, direction, size: [n, n], supersampling: 1 };
-            let slab_m = top_m / slabs as f32 / -direction.z;
-            let ends_m: Vec<f32> = (1..=slabs).map(|slab| slab as f32 * slab_m).collect();
-            let through = caster.seen_through(&rays, &ends_m);
-            mean.iter_mut()
-                .zip(through.iter().rev())
-                .for_each(|(mean, through)| *mean += through / around.len() as f64);
-        }
-        mean
-    };
-    GAIN_ANGLES_DEG.map(|theta| {
-        let few = mean(theta, RAYS[0]);
-        if is_thin(&few) { mean(theta, RAYS[1]) } else { few }
-    })
+/// What is seen through strands: how deep into stacks.
+pub struct Truth {
+    /// Bottoms of slabs, over the stack's height, the highest first.
+    bottoms: Vec<f32>,
+    /// Mean transmittance from outside to each, at each of [`GAIN_ANGLES_DEG`] (in the tile).
+    through: [Vec<f64>; 9],
+}
+
+impl Truth {
+    /// Of strands mapped by `skin_from_tile`, which reach up to `top_m` there, down to the bottoms of all slabs of `cuts`.
+    pub fn new(scene: Geometry<'_>, edge_m: f32, top_m: f32, cuts: &[Slabs], skin_from_tile: Mat3) -> Self {
+        let of = |cut: &Slabs| (0..cut.count()).map(|slab| cut.span(slab)[0]).collect::<Vec<_>>();
+        let mut bottoms: Vec<f32> = cuts.iter().flat_map(of).collect();
+        bottoms.sort_by(|a, b| b.total_cmp(a));
+        bottoms.dedup();
+        let caster = Caster::new(scene);
+        let mean = |theta: f32, rays: usize| {
+            let mut mean = vec![0.0; bottoms.len()];
+            let around: Vec<Vec3> = directions(theta).map(|in_tile| (skin_from_tile * in_tile).normalize()).collect();
+            for &direction in &around {
+                let n = along_edge(theta, rays);
+                let rays = Rays::Tile { edge_m, top_m, direction, size: [n, n], supersampling: 1 };
+                let ends_m: Vec<f32> = bottoms.iter().map(|bottom| (1.0 - bottom) * top_m / -direction.z).collect();
+                let through = caster.seen_through(&rays, &ends_m);
+                mean.iter_mut().zip(&through).for_each(|(mean, through)| *mean += through / around.len() as f64);
+            }
+            mean
+        };
+        let through = GAIN_ANGLES_DEG.map(|theta| {
+            let few = mean(theta, RAYS[0]);
+            if is_thin(few.last()) { mean(theta, RAYS[1]) } else { few }
+        });
+        Self { bottoms, through }
+    }
+
+    /// Down to the bottoms of one of the cuts, the lowest first.
+    pub fn of(&self, cut: &Slabs) -> [Vec<f64>; 9] {
+        let deeper = |bottom: f32| self.bottoms.partition_point(|other| *other > bottom);
+        let at: Vec<usize> = (0..cut.count()).map(|slab| deeper(cut.span(slab)[0])).collect();
+        self.through.each_ref().map(|through| at.iter().map(|&i| through[i]).collect())
+    }
 }
 
 /// Whether skin is seen through all of it: then it is worth to look closer.
-fn is_thin(through: &[f64]) -> bool {
-    through.first().is_some_and(|&skin| skin > THIN)
+fn is_thin(to_skin: Option<&f64>) -> bool {
+    to_skin.is_some_and(|&skin| skin > THIN)
 }
 
 /// Fits the gains of every mip and layer of `tile`, mapped by `skin_from_tile`, to the truth. What is seen down to a slab's bottom is
@@ -85,7 +103,7 @@ pub fn fit(tile: &Tile, truth: &[Vec<f64>; 9], skin_from_tile: Mat3) -> Vec<Vec<
             let (mip, angle) = (i / angles, i % angles);
             let truth = &truth[angle];
             let size = tile.shells.size >> mip;
-            let spots = (size as usize).clamp(8, SPOTS[usize::from(is_thin(truth))]);
+            let spots = (size as usize).clamp(8, SPOTS[usize::from(is_thin(truth.first()))]);
             let in_tiles = directions(GAIN_ANGLES_DEG[angle]);
             let seen: Vec<Incidence> = in_tiles
                 .map(|d| Incidence::new((skin_from_tile * d).normalize(), skin_from_tile, 1.0 / size.max(1) as f32))
@@ -154,7 +172,7 @@ fn solve(depths: &[Vec<f32>], truth: &[f64]) -> Vec<f32> {
         gains[slab] = gain as f32;
         above = gain;
     }
-    let scale = if is_thin(truth) { scale(&sums, truth[0]) } else { 1.0 };
+    let scale = if is_thin(truth.first()) { scale(&sums, truth[0]) } else { 1.0 };
     gains.into_iter().map(|gain| gain * scale).collect()
 }
 

@@ -5,6 +5,7 @@ pub mod deposit;
 pub mod encode;
 pub mod ends;
 pub mod gains;
+pub mod heights;
 pub mod undercoat;
 
 use crate::error::{Error, Result};

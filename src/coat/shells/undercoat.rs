@@ -36,22 +36,27 @@ impl Profile {
     /// Of the slabs of a layout, whose textures show hair without its lean.
     pub fn new(medium: &Medium, layout: &VoxelLayout) -> Self {
         let undercoat = medium.undercoat();
-        let part_m = layout.slab_m / PARTS as f32;
         let per_m = undercoat.density_per_m2 * undercoat.stretch * undercoat.diameter_m / PARTS as f32;
         let end = undercoat.density_per_m2 * FRAC_PI_4 * undercoat.diameter_m * undercoat.diameter_m;
+        let slabs = &layout.slabs;
         let part = |i: usize| {
             let (slab, n) = (i / PARTS, i % PARTS);
-            let [low, t, high] = [0.0, 0.5, 1.0].map(|part| (i as f32 + part) * part_m / undercoat.height_m);
+            let [bottom, drawn] = slabs.span(slab);
+            // What stands out above the last slab belongs to it.
+            let top = if slab + 1 == slabs.count() { 1.0 } else { drawn };
+            let at_m = |part: f32| (bottom + (top - bottom) * (n as f32 + part) / PARTS as f32) * layout.height_m;
+            let [low, t, high] = [0.0, 0.5, 1.0].map(|part| at_m(part) / undercoat.height_m);
+            let held = (top - bottom) / (drawn - bottom);
             SlabPart {
                 slab,
                 t,
-                above_m: (n as f32 + 0.5 - 0.5 * PARTS as f32) * part_m,
-                extinction: per_m * medium.reaching(t),
+                above_m: at_m(0.5) - slabs.middle(slab) * layout.height_m,
+                extinction: per_m * held * medium.reaching(t),
                 ends: end * (medium.reaching(low) - medium.reaching(high)),
                 colour: medium.colour(t.min(1.0)),
             }
         };
-        let parts = (0..layout.slabs * PARTS).map(part).filter(|part| part.extinction > 0.0 || part.ends > 0.0);
+        let parts = (0..slabs.count() * PARTS).map(part).filter(|part| part.extinction > 0.0 || part.ends > 0.0);
         let along = undercoat.mean_sine(0.0);
         Self { parts: parts.collect(), upright: (1.0 - along * along).sqrt() }
     }
@@ -80,7 +85,7 @@ impl Profile {
 /// Adds a tile's undercoat. As with guard hair, a texel of a slab holds what lies along the mean strand of slope `slopes[slab]`
 /// through it.
 pub fn add(medium: &Medium, slopes: &[Vec2], voxels: &mut Voxels, ends: &mut [f32]) {
-    let layout = voxels.layout;
+    let layout = voxels.layout.clone();
     let profile = Profile::new(medium, &layout);
     // As many places along a texel's edge as there are cells.
     let across = medium.cells().div_ceil(layout.size[0]);

@@ -1,5 +1,6 @@
 //! What hair at a pixel has of the coat there, as its root and the skin's facets say.
 
+use super::Slabs;
 use super::guards::APART;
 
 /// What of a slab of the stack hair fills that is shorter than the coat's offset: the tile is squeezed to a share of the stack, and
@@ -15,15 +16,14 @@ pub struct Filled {
 }
 
 impl Filled {
-    /// Of slab `layer` of a stack of `layers`, the skin counted, that is `height_m` high, where hair has the share `share` in [0, 1] of
+    /// Of layer `layer` of a stack of `slabs` that is `height_m` high, where hair has the share `share` in [0, 1] of
     /// its offset.
-    pub fn new(layer: u32, share: f32, layers: u32, height_m: f32) -> Self {
-        let slabs = layers as f32 - 1.0;
-        let bottom = layer as f32 - 1.0;
-        let filled = (share * slabs - bottom).clamp(0.0, 1.0) / share.max(1e-6);
-        let middle = bottom / share.max(1e-6) + 0.5 * filled;
-        let layer = (middle.floor() + 1.0).clamp(1.0, slabs) as u32;
-        Self { layer, slab_m: filled * height_m / slabs, slabs: filled }
+    pub fn new(layer: u32, share: f32, slabs: &Slabs, height_m: f32) -> Self {
+        let [bottom, top] = slabs.span(layer as usize - 1).map(|height| height / share.max(1e-6));
+        let top = top.min(slabs.tops()[slabs.count()]);
+        let filled = (top - bottom).max(0.0);
+        let own = slabs.at(0.5 * (bottom + top)).max(layer as usize - 1);
+        Self { layer: own as u32 + 1, slab_m: filled * height_m, slabs: filled / slabs.thickness(own) }
     }
 }
 

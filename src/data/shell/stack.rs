@@ -43,9 +43,14 @@ impl<'a> Stack<'a> {
         self.tile.shells.layers as usize - 1
     }
 
-    /// Height of one slab, m.
-    pub fn slab_m(&self) -> f32 {
-        self.tile.height_m / (self.tile.shells.layers - 1) as f32
+    /// Height of the slab of a layer above 0, m.
+    pub fn slab_m(&self, layer: usize) -> f32 {
+        self.tile.height_m * self.tile.shells.slabs.thickness(layer - 1)
+    }
+
+    /// Height of its middle over the skin, m.
+    pub fn middle_m(&self, layer: usize) -> f32 {
+        self.tile.height_m * self.tile.shells.slabs.middle(layer - 1)
     }
 
     /// What a shader fetches for slab `layer` (1 … layers − 1) where the view ray passes the tile's plane z = 0 at `uv`.
@@ -55,8 +60,7 @@ impl<'a> Stack<'a> {
 
     /// Where the view ray through `uv` of the plane z = 0 passes the middle of slab `layer`.
     pub fn middle(&self, layer: usize, uv: Vec2, seen: &Incidence) -> Vec2 {
-        let middle_m = (layer as f32 - 0.5) * self.slab_m();
-        uv + seen.slope() * middle_m / self.tile.edge_m
+        uv + seen.slope() * self.middle_m(layer) / self.tile.edge_m
     }
 
     /// What a shader fetches for slab `layer` where the view ray passes the slab's middle at `uv`.
@@ -95,7 +99,7 @@ impl<'a> Stack<'a> {
 
     /// An anisotropic fetch: the pixel's footprint widened by the ray's run through the slab.
     fn footprint(&self, layer: usize, seen: &Incidence) -> Footprint {
-        let run = (seen.slope() - self.tile.shells.slopes[layer]) * self.slab_m() / self.tile.edge_m;
+        let run = (seen.slope() - self.tile.shells.slopes[layer]) * self.slab_m(layer) / self.tile.edge_m;
         let major = (seen.pixel * seen.pixel + run.length_squared()).sqrt();
         // Taps closer than a texel would see nothing new.
         let minor = seen.pixel.max(1.0 / self.tile.shells.size as f32);
@@ -144,7 +148,7 @@ impl<'a> Stack<'a> {
     /// Layers and their optical depths along the view ray through `uv`, without gain, from the outermost on.
     pub fn slab_depths(&self, uv: Vec2, seen: &Incidence) -> impl Iterator<Item = (usize, f32)> {
         let layers = (1..self.tile.shells.layers as usize).rev();
-        layers.map(move |layer| (layer, slab_optical_depth(&self.fetch(layer, uv, seen), seen, self.slab_m())))
+        layers.map(move |layer| (layer, slab_optical_depth(&self.fetch(layer, uv, seen), seen, self.slab_m(layer))))
     }
 
     /// Optical depth of the whole stack along the view ray through `uv`; layer 0, the skin, left out.

@@ -1,9 +1,11 @@
 //! Structs as the shaders read them; `tests/shaders.rs` compares names, offsets and sizes with the WGSL.
 
 use crate::data::coat::{FinEdge, LOOK, Sampled, ShellStack, Tile};
-use crate::data::shell::above_of;
+use crate::data::image::Image8;
+use crate::data::shell::unorm;
 use crate::error::Result;
 use crate::gpu::light::LightItem;
+use crate::math::Vec2;
 use crate::runtime::casters::Casters;
 use crate::runtime::draw_list::{CoatMesh, Frame, MAX_LIGHTS, SkinMesh};
 use crate::runtime::outer_normals;
@@ -73,6 +75,29 @@ pub struct TileUniform {
     pub medium_unit_per_m: f32,
 }
 
+/// `Slab` of `shared/coat.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct SlabItem {
+    /// Mean slope of the hair.
+    pub slope: [f32; 2],
+    /// Heights over the stack's.
+    pub bottom: f32,
+    /// Of its top.
+    pub top: f32,
+}
+
+impl SlabItem {
+    /// The layers of `shells`; the skin's is flat.
+    pub fn of(shells: &ShellStack) -> Vec<Self> {
+        let of = |(layer, slope): (usize, &Vec2)| {
+            let [bottom, top] = if layer == 0 { [0.0; 2] } else { shells.slabs.span(layer - 1) };
+            Self { slope: slope.to_array(), bottom, top }
+        };
+        shells.slopes.iter().enumerate().map(of).collect()
+    }
+}
+
 /// `Mip` of `shared/coat.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -104,8 +129,8 @@ pub struct LayerLook {
     pub area: f32,
     /// Hair area above the layer's top over that above its middle.
     pub top_share: f32,
-    /// Height over which the hair area above falls to 1/e, slabs.
-    pub scale_slabs: f32,
+    /// Height over which the hair area above falls to 1/e, over the stack's.
+    pub scale: f32,
 }
 
 /// Looks of a tile's hair, and which of them each layer has.
@@ -137,26 +162,32 @@ impl LayerLook {
             }
             None => (0, 0.0),
         };
-        // The coarsest mip says what lies above the middle of each layer in the mean; nothing lies above the last.
-        let coarsest = tile.shells.albedo.last().map_or(&[][..], |layers| &layers[..]);
-        let above = |layer: usize| {
-            let alpha = coarsest.get(layer).and_then(|image| image.pixels.get(3));
-            alpha.map_or(0.0, |&byte| above_of(byte))
+        // The coarsest mip says how much hair each layer holds in the mean.
+        let coarsest = tile.shells.medium.last().zip(tile.shells.extinction_scales_per_m.last());
+        let thickness = |layer: usize| tile.shells.slabs.thickness(layer.max(1) - 1);
+        let area = |layer: usize| {
+            let extinction = |(mip, scale): (&Vec<Image8>, &f32)| Some(unorm(*mip.get(layer)?.pixels.first()?) * scale);
+            if layer == 0 {
+                0.0
+            } else {
+                coarsest.and_then(extinction).unwrap_or(0.0) * thickness(layer) * tile.height_m
+            }
         };
-        let layer = |layer: usize| {
-            let crowding = kind(layer).1;
-            let middle = above(layer);
-            let above_top = if layer + 1 < layers { 0.5 * (middle + above(layer + 1)) } else { 0.0 };
-            let area = 2.0 * (middle - above_top);
-            let top_share = if middle > 0.0 { above_top / middle } else { 1.0 };
-            let scale_slabs = (middle / area.max(f32::MIN_POSITIVE)).clamp(0.5, layers as f32);
-            Self { crowding, area, top_share, scale_slabs }
-        };
-        Ok(LitLayers {
-            looks: of,
-            kinds: (0..layers).map(|layer| kind(layer).0).collect(),
-            layers: (0..layers).map(layer).collect(),
-        })
+        let mut above_top = 0.0;
+        let mut of_layers: Vec<Self> = (0..layers)
+            .rev()
+            .map(|layer| {
+                let area = area(layer);
+                let middle = above_top + 0.5 * area;
+                let top_share = if middle > 0.0 { above_top / middle } else { 1.0 };
+                let scale =
+                    (thickness(layer) * middle / area.max(f32::MIN_POSITIVE)).clamp(0.5 * thickness(layer), 1.0);
+                above_top += area;
+                Self { crowding: kind(layer).1, area, top_share, scale }
+            })
+            .collect();
+        of_layers.reverse();
+        Ok(LitLayers { looks: of, kinds: (0..layers).map(|layer| kind(layer).0).collect(), layers: of_layers })
     }
 }
 
@@ -213,12 +244,21 @@ pub struct PaintUniform {
     pub has_colour: u32,
     /// 1 where density and length are painted.
     pub has_painted: u32,
+    /// Share of the optical depth that the level which is drawn has.
+    pub share: f32,
+    /// Share of the fins that is drawn.
+    pub fins: f32,
 }
 
 impl PaintUniform {
-    /// What `fur` has.
+    /// What `fur` has, all of it drawn.
     pub fn new(fur: &CoatMesh<'_>) -> Self {
-        Self { has_colour: u32::from(fur.colour.is_some()), has_painted: u32::from(fur.painted.is_some()) }
+        Self {
+            has_colour: u32::from(fur.colour.is_some()),
+            has_painted: u32::from(fur.painted.is_some()),
+            share: 1.0,
+            fins: 1.0,
+        }
     }
 }
 

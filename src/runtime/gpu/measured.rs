@@ -53,11 +53,13 @@ impl Prepared<'_> {
         let Renderer { gpu, pipelines, samples, .. } = self.renderer;
         let targets = Targets::new(gpu, pipelines, view.size, *samples)?;
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view, shadow)));
+        // All show the same levels.
+        orders.iter().for_each(|(order, _)| self.set(order));
         let groups: Vec<_> = orders.iter().map(|(order, _)| self.view_group(&order.items, &targets)).collect();
         let mut encoder = gpu.encoder("measured");
         let mut pass = targets.skin_pass(&mut encoder, None);
         pass.set_bind_group(0, &groups[0], &[]);
-        self.draw_skins(&mut pass, skin);
+        self.draw_skins(&mut pass, skin, &orders[0].0.details);
         drop(pass);
         targets.find_edges(&mut encoder, pipelines);
         let mut pass = targets.coat_pass(&mut encoder, "measured", None);

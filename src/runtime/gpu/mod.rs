@@ -14,6 +14,7 @@ mod prepared;
 mod resources;
 mod shadow_map;
 mod targets;
+mod tile;
 
 pub use prepared::Prepared;
 
@@ -22,8 +23,8 @@ use crate::error::{Error, Result};
 use crate::gpu::Gpu;
 use crate::runtime::draw_list::{DrawList, Picture};
 use pipelines::Pipelines;
-use resources::GpuTile;
 use shadow_map::ShadowMap;
+use tile::GpuTile;
 
 /// Time and memory of one pass.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +50,10 @@ pub struct Drawn {
     pub passes: Vec<PassCost>,
     /// Memory of the targets drawn into.
     pub target_bytes: u64,
+    /// Level of detail that is drawn, the mean of all coats; 0 is the finest.
+    pub level: f32,
+    /// Height of the longest hair, pixels.
+    pub height_px: f32,
     /// What came of the key light's shadow.
     pub shadow: KeyShadow,
 }
@@ -73,7 +78,8 @@ pub struct Renderer<'a> {
     pipelines: Pipelines,
     shadow_map: ShadowMap,
     samples: u32,
-    tiles: Vec<GpuTile>,
+    /// Per tile, its levels.
+    tiles: Vec<Vec<GpuTile>>,
     /// Stands in for a tile where skin has none.
     bare: GpuTile,
 }
@@ -92,14 +98,14 @@ impl<'a> Renderer<'a> {
                 .with_expected("1 to 8"));
         }
         let pipelines = Pipelines::new(gpu, samples)?;
-        let bare = GpuTile::new(gpu, &pipelines.layouts, &resources::bare_tile())?;
-        let tiles = tiles.iter().map(|tile| GpuTile::new(gpu, &pipelines.layouts, tile)).collect::<Result<_>>()?;
+        let bare = GpuTile::new(gpu, &pipelines.layouts, &tile::bare_tile(), f32::INFINITY)?;
+        let tiles = tiles.iter().map(|tile| GpuTile::levels(gpu, &pipelines.layouts, tile)).collect::<Result<_>>()?;
         Ok(Self { gpu, pipelines, shadow_map: ShadowMap::new(gpu)?, samples, tiles, bare })
     }
 
     /// Memory of the tiles' textures, bytes.
     pub fn tile_bytes(&self) -> u64 {
-        self.tiles.iter().map(|tile| tile.bytes).sum()
+        self.tiles.iter().flatten().map(|tile| tile.bytes).sum()
     }
 
     /// Uploads a pose: everything that is drawn but for camera and light. `scene` carries the tiles that this was made with.

@@ -9,6 +9,7 @@ use super::{Drawn, KeyShadow, PassCost, Renderer};
 use crate::error::{Error, Result};
 use crate::gpu::Timer;
 use crate::runtime::away_from_borders;
+use crate::runtime::detail::Detail;
 use crate::runtime::draw_list::{DrawList, Frame, MAX_LIGHTS, Show};
 use crate::runtime::order::{Item, Order};
 use crate::runtime::shadow_view::ShadowView;
@@ -102,6 +103,7 @@ impl<'a> Prepared<'a> {
         let uniform = ViewUniform::new(view, shadow.as_ref());
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&uniform));
         let order = Order::of(&self.sighted(), view, *samples, show);
+        self.set(&order);
         let group = self.view_group(&order.items, &targets);
         let mut encoder = gpu.encoder("frame");
         let casters = shadow.is_some().then_some(&self.casters);
@@ -109,7 +111,7 @@ impl<'a> Prepared<'a> {
         let mut pass = targets.skin_pass(&mut encoder, self.timer.writes(1));
         pass.set_bind_group(0, &group, &[]);
         let skin = if show.skin { &pipelines.skin } else { &pipelines.skin_depth };
-        passes.push(self.draw_skins(&mut pass, skin));
+        passes.push(self.draw_skins(&mut pass, skin, &order.details));
         drop(pass);
         targets.find_edges(&mut encoder, pipelines);
         let mut pass = targets.coat_pass(&mut encoder, TIMED[1], self.timer.writes(2));
@@ -139,13 +141,20 @@ impl<'a> Prepared<'a> {
             (Some(_), Some(ShadowView { guests_reach, .. })) => KeyShadow::Cast { guests_reach },
             (Some(_), None) => KeyShadow::TooNear,
         };
-        Ok(Drawn { picture, passes, target_bytes, shadow })
+        let levels = order.details.iter().map(|detail| detail.level());
+        let level = levels.sum::<f32>() / order.details.len().max(1) as f32;
+        Ok(Drawn { picture, passes, target_bytes, level, height_px: order.height_px, shadow })
     }
 
     /// The key light's map, where it is asked for and holds what it should.
     pub(super) fn shadow(&self, view: &Frame) -> Option<ShadowView> {
         let key = view.lights.first().filter(|_| view.shadow_map);
         key.and_then(|light| ShadowView::of(light, &self.casters.extent))
+    }
+
+    /// Sets what of each coat is drawn next.
+    pub(super) fn set(&self, order: &Order) {
+        self.furs.iter().zip(&order.details).for_each(|(fur, &detail)| fur.set(self.renderer.gpu, detail));
     }
 
     pub(super) fn sighted(&self) -> Vec<&Sighted> {
@@ -168,12 +177,24 @@ impl<'a> Prepared<'a> {
         resources::bind(gpu, &pipelines.layouts.view, &resources)
     }
 
-    /// All skins by `pipeline`.
-    pub(super) fn draw_skins(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline) -> PassCost {
+    /// The finest level of a tile that any coat shows.
+    fn finest(&self, tile: usize, details: &[Detail]) -> usize {
+        let shown = self.furs.iter().zip(details).filter(|(fur, _)| fur.tile == tile);
+        shown.filter_map(|(_, detail)| detail.levels().map(|(level, _)| level).min()).min().unwrap_or(0)
+    }
+
+    /// All skins by `pipeline`, under the coats' levels.
+    pub(super) fn draw_skins(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        pipeline: &wgpu::RenderPipeline,
+        details: &[Detail],
+    ) -> PassCost {
         let mut cost = PassCost { name: TIMED[0], ms: None, bytes: 0, draw_calls: 0, triangles: 0 };
         pass.set_pipeline(pipeline);
         for skin in &self.skins {
-            let tile = skin.tile.map_or(&self.renderer.bare, |tile| &self.renderer.tiles[tile]);
+            let tile =
+                skin.tile.map_or(&self.renderer.bare, |tile| &self.renderer.tiles[tile][self.finest(tile, details)]);
             pass.set_bind_group(1, &tile.groups[0], &[]);
             pass.set_bind_group(2, &skin.material, &[]);
             pass.set_vertex_buffer(0, skin.vertices.slice(..));
@@ -196,11 +217,15 @@ impl<'a> Prepared<'a> {
         let mut cost = PassCost { name: TIMED[1], ms: None, bytes: self.bytes_read(), draw_calls: 0, triangles: 0 };
         for run in &order.runs {
             let fur = &self.furs[run.fur];
-            let tile = &self.renderer.tiles[fur.tile];
+            let tile = &self.renderer.tiles[fur.tile][run.level];
             let Some(pipeline) = drawn(fur, run.fins) else { continue };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &tile.groups[run.look], &[]);
-            pass.set_bind_group(2, if run.fins { &fur.fins } else { &fur.shells }, &[]);
+            pass.set_bind_group(
+                2,
+                if run.fins { &fur.fins } else { &fur.shells[order.details[run.fur].turn(run.level)] },
+                &[],
+            );
             if run.fins {
                 pass.set_bind_group(3, &tile.fin, &[]);
             }
@@ -214,6 +239,6 @@ impl<'a> Prepared<'a> {
     }
 
     fn bytes_read(&self) -> u64 {
-        self.furs.iter().map(|fur| fur.bytes).chain(self.renderer.tiles.iter().map(|tile| tile.bytes)).sum()
+        self.furs.iter().map(|fur| fur.bytes).chain(self.renderer.tiles.iter().flatten().map(|tile| tile.bytes)).sum()
     }
 }
