@@ -14,7 +14,7 @@ use furrier::volume::medium::Medium;
 
 const EFFORT: Effort = Effort { pixels: 128, supersampling: 2 };
 
-fn recipe(lean_deg: f32) -> TileRecipe {
+pub fn recipe(lean_deg: f32) -> TileRecipe {
     TileRecipe {
         preset: "test".into(),
         shells: ShellParameters { tile_mm: 8.0, ..ShellParameters::default() },
@@ -25,7 +25,7 @@ fn recipe(lean_deg: f32) -> TileRecipe {
     }
 }
 
-fn hair(guard: bool, shape: Shape) -> TileHair {
+pub fn hair(guard: bool, shape: Shape) -> TileHair {
     let fibre = |on: bool, mut fibre: Fibre| {
         fibre.density_per_m2 *= f32::from(u8::from(on));
         fibre
@@ -195,7 +195,7 @@ fn layer_shift(tile: &furrier::data::coat::Tile, layer: usize, worn: Mat3) -> (i
             .sum()
     };
     let best = (-20..=20).max_by(|&a, &b| correlation(a).total_cmp(&correlation(b))).unwrap();
-    let height_m = stack.slab_m() * 30.0_f32.to_radians().cos();
+    let height_m = (stack.middle_m(layer + 1) - stack.middle_m(layer)) * 30.0_f32.to_radians().cos();
     (best, height_m * 30.0_f32.to_radians().tan() / tile.edge_m * size as f32)
 }
 

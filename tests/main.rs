@@ -30,6 +30,7 @@ mod hybrid;
 mod hybrid_twins;
 mod lanes;
 mod laws;
+mod levels;
 mod lights;
 mod likeness;
 mod made;

@@ -1,5 +1,6 @@
 //! A coat that sits for many pictures: device, textures and geometry are made ready once.
 
+use super::cost::Cost;
 use super::stage;
 use super::subject::subject;
 use crate::asset::Asset;
@@ -9,7 +10,7 @@ use crate::error::Result;
 use crate::gpu::{Choice, Gpu};
 use crate::math::{DVec3, Vec3};
 use crate::runtime::gpu::{Drawn, Prepared, Renderer};
-use crate::runtime::{Frame, Show};
+use crate::runtime::{Frame, Picture, Show};
 use crate::stage::camera::depth_range_m;
 use crate::stage::light::Lit;
 
@@ -45,12 +46,27 @@ pub fn sit<T>(
 }
 
 impl Sitting<'_> {
-    /// One picture of skin, shells and fins.
+    /// One picture of skin, shells and fins, in this level of detail or in that which the runtime chooses.
     ///
     /// # Errors
     /// As [`Prepared::draw`].
-    pub fn draw(&mut self, camera: &Camera, lit: Lit, size: [u32; 2]) -> Result<Drawn> {
-        self.prepared.draw(&frame(camera, self.origin_m, &self.points_m, size, lit), Show::default())
+    pub fn draw(&mut self, camera: &Camera, lit: Lit, size: [u32; 2], level: Option<usize>) -> Result<Drawn> {
+        self.prepared.draw(&self.frame(camera, lit, size, level), Show::default())
+    }
+
+    /// Texels that are read for each pixel that shows anything in `picture`, which was drawn so.
+    ///
+    /// # Errors
+    /// As [`Prepared::cost`].
+    pub fn reads(&mut self, camera: &Camera, lit: Lit, picture: &Picture, level: Option<usize>) -> Result<f64> {
+        let counted = self.prepared.cost(&self.frame(camera, lit, picture.size, level), Show::default())?;
+        let mut cost = Cost::default();
+        cost.add(&counted, picture);
+        Ok(cost.per_covered_pixel()[1])
+    }
+
+    fn frame(&self, camera: &Camera, lit: Lit, size: [u32; 2], level: Option<usize>) -> Frame {
+        Frame { level, ..frame(camera, self.origin_m, &self.points_m, size, lit) }
     }
 }
 
@@ -66,5 +82,6 @@ pub(super) fn frame(camera: &Camera, origin_m: DVec3, points_m: &[Vec3], size: [
         ambient: lit.ambient,
         shadow_map: true,
         depths: false,
+        level: None,
     }
 }

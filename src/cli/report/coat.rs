@@ -1,24 +1,17 @@
 //! `furrier report coat`.
 
 use super::checked_outputs;
-use crate::asset::coat::{Fallback, read_coat};
+use super::subject::Subject;
+use crate::asset::coat::read_coat;
 use crate::asset::write;
-use crate::bake::picture::{Only, PictureRequest};
-use crate::bake::{Method, Request, bake};
-use crate::cli::bake::{Layout, UnitName};
 use crate::cli::compare::check_limit;
 use crate::cli::console::Console;
 use crate::cli::output;
-use crate::cli::stage::size;
 use crate::coat::summary::summarise;
 use crate::error::{Error, Kind, Result};
-use crate::gpu::Choice;
-use crate::hybrid::device::Device;
 use crate::metrics::compare::LinearImage;
 use crate::metrics::timing::SCHEMA_VERSION;
-use crate::preset::Preset;
-use crate::report::coat::keep::{Cost, Drawing, Keep};
-use crate::report::coat::key::Key;
+use crate::report::coat::keep::{Cost, Drawing};
 use crate::report::coat::summary::Group;
 use crate::report::coat::{Fur, Options, Report, look, table, views};
 use crate::stage::png;
@@ -42,38 +35,8 @@ Beside hat.json stand hat.csv, hat.svg and hat.png: per light and distance three
 hat.parts/ keeps finished pictures: a report that was stopped goes on where it was, and a render is drawn again only where what it \
 shows has changed. docs/steps/report-coat.md says what is measured.")]
 pub struct Coat {
-    /// A .glb, .gltf or .obj file, or sample:NAME
-    input: String,
-    /// The report to write; a .csv, a .svg, a .png and a folder .parts go beside it
-    #[arg(short, long, value_name = "OUT.json")]
-    output: PathBuf,
-    /// A built-in preset or a TOML file
-    #[arg(long, value_name = "NAME|FILE", default_value = "fox")]
-    preset: String,
-    /// Change a value of the preset; repeatable
-    #[arg(long = "set", value_name = "TABLE.KEY=VALUE")]
-    settings: Vec<String>,
-    /// Fur this material alone; repeatable
-    #[arg(long = "material", value_name = "NAME")]
-    materials: Vec<String>,
-    /// What one unit of the file is
-    #[arg(long, value_enum, default_value_t = UnitName::Auto)]
-    units: UnitName,
-    /// How the skin is laid out in the plane, as `bake` does it
-    #[arg(long, value_enum, default_value_t = Layout::Lapped)]
-    parameterisation: Layout,
-    /// Layers, the opaque skin included: overrides the preset's shells.layers
-    #[arg(long, value_name = "N")]
-    layers: Option<u32>,
-    /// Texels along a tile's edge, or along the atlas's: overrides the preset's shells.texture_size
-    #[arg(long, value_name = "N")]
-    texture_size: Option<u32>,
-    /// Where random numbers start
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    seed: u64,
-    /// Pixels of each picture
-    #[arg(long, value_name = "WxH", default_value = "512x512")]
-    size: String,
+    #[command(flatten)]
+    subject: Subject,
     /// Views around the asset at each distance, 1 to 64
     #[arg(long, value_name = "N", default_value_t = 8)]
     views: usize,
@@ -86,9 +49,6 @@ pub struct Coat {
     /// Exit with 1 where the mean FLIP is over the floor by more than this
     #[arg(long, value_name = "FLIP")]
     max_flip: Option<f64>,
-    /// What draws fur, as in `render`; the coat is drawn by the adapter named here, or by any there is
-    #[arg(long, value_name = "auto|cpu|gpu[:NAME]", default_value = "auto")]
-    device: String,
 }
 
 impl Coat {
@@ -98,31 +58,27 @@ impl Coat {
     /// Where the input or an option cannot be used, there is no adapter, a file cannot be written, or the limit is exceeded.
     pub fn run(self, console: &Console) -> Result<()> {
         check_limit(self.max_flip)?;
-        let [csv, svg, png_file] = checked_outputs(&self.output, &self.input)?;
-        let size = size(&self.size)?;
+        let [csv, svg, png_file] = checked_outputs(&self.subject.output, &self.subject.input)?;
+        let size = self.subject.size()?;
         let distances = views::parse(&self.distances, self.views)?;
         let lights = lights(&self.lights)?;
-        let device: Device = self.device.parse()?;
-        let preset = Preset::load(&self.preset)?.with_settings(&self.settings)?;
-        let mut keep = Keep::open(&self.output.with_extension("parts"))?;
+        let (device, choice) = self.subject.devices()?;
+        let preset = self.subject.preset()?;
+        let mut keep = self.subject.keep()?;
         let progress = console.progress();
         progress.step("bake");
-        let (coat_key, file) = self.baked(&preset, &mut keep, console)?;
+        let (coat_key, file) = self.subject.baked(&preset, &mut keep, console)?;
         let (asset, coat) = read_coat(&file)?;
         progress.step("grow");
-        let fur = Fur::new(self.picture(preset.clone()), device.clone(), size)?;
+        let fur = Fur::new(self.subject.picture(preset), device, size)?;
         fur.notes().iter().for_each(|note| console.note(note));
-        let choice = match &device {
-            Device::Gpu(choice) => choice.clone(),
-            Device::Auto | Device::Cpu => Choice::Auto,
-        };
         let coat_bytes = summarise(&coat).vram_bytes as u64;
         let (report, adapter) = sit(&asset, &coat, &choice, |sitting| {
             let adapter = sitting.device.clone();
             let options = Options { size, lights, distances, coat: coat_key.with(&adapter), coat_bytes };
             let mut draw = |camera: &_, lit| {
                 let start = Instant::now();
-                let drawn = sitting.draw(camera, lit, size)?;
+                let drawn = sitting.draw(camera, lit, size, None)?;
                 let triangles = drawn.passes.iter().map(|pass| pass.triangles).sum();
                 let cost = Cost { ms: start.elapsed().as_secs_f64() * 1e3, triangles: Some(triangles) };
                 Ok(Drawing { picture: LinearImage::from(&drawn.picture.film()), cost })
@@ -133,21 +89,22 @@ impl Coat {
         progress.finish();
         report.notes.iter().for_each(|note| console.warning(note));
         let all = self.json(&report, &fur, size, &adapter);
-        let title = format!("{}, {}, {} × {}, coat by {adapter}", self.input, self.preset, size[0], size[1]);
+        let title =
+            format!("{}, {}, {} × {}, coat by {adapter}", self.subject.input, self.subject.preset, size[0], size[1]);
         let files = [
             (csv, table::csv(&report.pictures).into_bytes()),
             (svg, report.plot(&title).into_bytes()),
             (png_file, png::encode(&report.sheet)?),
-            (self.output.clone(), output::json_bytes(&self.output, &all)?),
+            (self.subject.output.clone(), output::json_bytes(&self.subject.output, &all)?),
         ];
         let files: Vec<(PathBuf, &[u8])> = files.iter().map(|(path, bytes)| (path.clone(), bytes.as_slice())).collect();
-        write::all(&files, &[PathBuf::from(&self.input)])?;
+        write::all(&files, &[PathBuf::from(&self.subject.input)])?;
         console.result(&all, |out| self.print(&report, out))?;
         let excess = report.summary.excess.flip;
         match self.max_flip {
             Some(limit) if excess > limit => {
                 Err(Error::new(Kind::Difference, "the coat is off by more than the limit")
-                    .with_file(&self.output)
+                    .with_file(&self.subject.output)
                     .with_field("summary.excess.flip")
                     .with_found(format!("{excess:.4}"))
                     .with_expected(format!("at most {limit}")))
@@ -156,62 +113,15 @@ impl Coat {
         }
     }
 
-    /// The coat's file, baked where this program has not baked the same before; and what decides it.
-    fn baked(&self, preset: &Preset, keep: &mut Keep, console: &Console) -> Result<(Key, PathBuf)> {
-        let mut preset = preset.clone();
-        preset.shells.layers = self.layers.unwrap_or(preset.shells.layers);
-        preset.shells.texture_size = self.texture_size.unwrap_or(preset.shells.texture_size);
-        let preset = preset.checked()?;
-        let method = match self.parameterisation {
-            Layout::Lapped => Method::Lapped,
-            Layout::Atlas => Method::Atlas { texels: self.texture_size },
-            Layout::Uv => Method::Uv(0),
-        };
-        let key = Key::default().program()?.asset(&self.input)?.preset(&preset)?;
-        let key = key.with((&self.materials, self.units.units(), method, self.seed));
-        let out = keep.coat_file(key);
-        if !out.is_file() {
-            let baked = bake(
-                &Request {
-                    input: self.input.clone(),
-                    out: out.clone(),
-                    preset,
-                    presets: Vec::new(),
-                    materials: self.materials.clone(),
-                    units: self.units.units(),
-                    method,
-                    seed: self.seed,
-                    fallback: Fallback::None,
-                    judge: false,
-                },
-                &mut |_| {},
-            )?;
-            baked.warnings.iter().for_each(|warning| console.warning(warning));
-        }
-        Ok((key, out))
-    }
-
-    fn picture(&self, preset: Preset) -> PictureRequest {
-        PictureRequest {
-            input: self.input.clone(),
-            preset,
-            materials: self.materials.clone(),
-            units: self.units.units(),
-            seed: self.seed,
-            only: Only::Hybrid,
-            pose: None,
-        }
-    }
-
     fn json(&self, report: &Report, fur: &Fur, size: [u32; 2], adapter: &str) -> Value {
         json!({
             "schema_version": SCHEMA_VERSION,
-            "input": self.input,
-            "preset": self.preset,
+            "input": self.subject.input,
+            "preset": self.subject.preset,
             "size": size,
-            "seed": self.seed,
+            "seed": self.subject.seed,
             "coat_device": adapter,
-            "render_device": self.device,
+            "render_device": self.subject.device,
             "hair_m": fur.hair_m(),
             "drawn": report.drawn,
             "pictures": report.pictures.iter().map(|picture| picture.value()).collect::<Vec<_>>(),
@@ -230,7 +140,7 @@ impl Coat {
             )?;
         }
         let excess = report.summary.excess.flip;
-        writeln!(out, "FLIP over the floor: {excess:.4}; {}", self.output.display())
+        writeln!(out, "FLIP over the floor: {excess:.4}; {}", self.subject.output.display())
     }
 }
 

@@ -1,7 +1,9 @@
 //! `furrier report`: error against cost.
 
 mod coat;
+mod levels;
 mod render;
+mod subject;
 
 use super::console::Console;
 use super::output;
@@ -9,13 +11,14 @@ use crate::error::{Error, Result};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 
-/// Error against cost: of the renderer's settings, or of a coat beside its fur; as JSON, CSV and a plot
+/// Error against cost: of the renderer's settings, of a coat beside its fur, or of its levels of detail; as JSON, CSV and a plot
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:
   furrier report render sample:hat -o hat.json --preset mink --size 256x256
   furrier report render bunny.glb -o bunny.json --size 512x512 --repeats 3
-  furrier report coat sample:hat -o hat.json --preset mink --views 4 --distances 1,4")]
+  furrier report coat sample:hat -o hat.json --preset mink --views 4 --distances 1,4
+  furrier report levels sample:creature -o levels.json --preset fox")]
 pub struct Report {
     #[command(subcommand)]
     what: What,
@@ -25,6 +28,7 @@ pub struct Report {
 enum What {
     Render(render::Render),
     Coat(coat::Coat),
+    Levels(levels::Levels),
 }
 
 impl Report {
@@ -36,6 +40,7 @@ impl Report {
         match self.what {
             What::Render(render) => render.run(console),
             What::Coat(coat) => coat.run(console),
+            What::Levels(levels) => levels.run(console),
         }
     }
 }

@@ -7,6 +7,7 @@
 mod fur;
 pub mod keep;
 pub mod key;
+pub mod levels;
 pub mod sheet;
 pub mod summary;
 pub mod table;
