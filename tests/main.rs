@@ -9,6 +9,7 @@
 mod accuracy;
 mod architecture;
 mod atlas;
+mod axes;
 mod bake;
 mod circles;
 mod cli;
@@ -61,6 +62,7 @@ mod sphere;
 mod squares;
 mod stage;
 mod strand_files;
+mod strip;
 mod summary;
 #[cfg(target_os = "linux")]
 mod surface;

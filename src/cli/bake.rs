@@ -1,7 +1,9 @@
 //! `furrier bake`.
 
+use super::axes::AxesArgs;
 use super::console::Console;
 use super::output;
+use crate::asset::Reading;
 use crate::asset::coat::Fallback;
 use crate::bake::units::Units;
 use crate::bake::{Baked, Laid, Method, Request, bake};
@@ -47,6 +49,11 @@ pub struct Bake {
     /// part of a figure, as a hat is, it takes the unit that makes the figure as large as an animal or a person
     #[arg(long, value_enum, default_value_t = UnitName::Auto)]
     units: UnitName,
+    #[command(flatten)]
+    axes: AxesArgs,
+    /// Take off the coat that the input wears already, as `furrier strip` does, and bake a new one
+    #[arg(long)]
+    rebake: bool,
     /// How the skin is laid out in the plane: patches grown along the hair, charts with texels of their own, or the
     /// asset's own UVs
     #[arg(long, value_enum, default_value_t = Layout::Lapped)]
@@ -193,6 +200,7 @@ impl Bake {
         }
         Ok(Request {
             input: self.input.clone(),
+            reading: Reading { rebake: self.rebake, ..self.axes.reading()? },
             out: self.output.clone(),
             preset,
             presets,

@@ -2,7 +2,7 @@
 
 use super::checked_outputs;
 use crate::asset::coat::{Fallback, read_coat};
-use crate::asset::write;
+use crate::asset::{Reading, write};
 use crate::bake::picture::{Only, PictureRequest};
 use crate::bake::{Method, Request, bake};
 use crate::cli::bake::{Layout, UnitName};
@@ -174,6 +174,7 @@ impl Coat {
             let baked = bake(
                 &Request {
                     input: self.input.clone(),
+                    reading: Reading::default(),
                     out: out.clone(),
                     preset,
                     presets: Vec::new(),
@@ -194,6 +195,7 @@ impl Coat {
     fn picture(&self, preset: Preset) -> PictureRequest {
         PictureRequest {
             input: self.input.clone(),
+            reading: Reading::default(),
             preset,
             materials: self.materials.clone(),
             units: self.units.units(),
