@@ -54,6 +54,7 @@ mod ribbons;
 mod runtime;
 mod scenes;
 mod seams;
+mod settings;
 mod shaders;
 mod shadow_map;
 mod shadows;

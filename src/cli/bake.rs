@@ -18,17 +18,7 @@ use std::path::{Path, PathBuf};
 
 /// Grow a coat on a mesh and write the furry asset
 #[derive(Debug, Args)]
-#[command(after_long_help = "\
-Examples:
-  furrier bake sample:creature -o creature.glb
-      a built-in mesh; the others are cylinder, hat, sphere, torus and plane
-  furrier bake cat.glb -o furry-cat.glb --preset short-cat
-  furrier bake deer.glb -o furry-deer.glb --material Body --set guard.length.mm=30
-      fur on one material only, its guard hair 30 mm long
-  furrier bake doll.gltf -o doll.glb --preset plush --preset Hair=sheep --report doll.json
-      two materials dressed differently; times, sizes and errors written down
-  furrier bake room.obj -o room.glb --units cm --fallback none
-      a file in centimetres, for an engine that reads the extension itself")]
+#[command(after_long_help = after_help())]
 pub struct Bake {
     /// A .glb, .gltf or .obj file, or sample:NAME
     input: String,
@@ -109,6 +99,32 @@ pub(super) enum Layout {
     Lapped,
     Atlas,
     Uv,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  furrier bake sample:creature -o creature.glb
+      a built-in mesh; the others are cylinder, hat, sphere, torus and plane
+  furrier bake cat.glb -o furry-cat.glb --preset short-cat
+  furrier bake deer.glb -o furry-deer.glb --material Body --set guard.length.mm=30
+      fur on one material only, its guard hair 30 mm long
+  furrier bake doll.gltf -o doll.glb --preset plush --preset Hair=sheep --report doll.json
+      two materials dressed differently; times, sizes and errors written down
+  furrier bake room.obj -o room.glb --units cm --fallback none
+      a file in centimetres, for an engine that reads the extension itself
+  furrier bake scan.obj -o scan.glb --up z
+      a scan that stands along z, combed as an animal that stands
+";
+
+const MAPS: &str = "
+Painted maps, over the first UV set: --set maps.length=FILE.png, maps.density, maps.colour, maps.comb, maps.clump.
+`furrier presets keys` prints every key of a preset, `furrier presets keys maps` these. Worked examples: docs/recipes.md.";
+
+/// Examples, the presets there are, and where painting is told.
+fn after_help() -> String {
+    let width = Preset::names().map(str::len).max().unwrap_or(0);
+    let presets: String = Preset::descriptions().map(|(name, text)| format!("  {name:width$}  {text}\n")).collect();
+    format!("{EXAMPLES}\nPresets:\n{presets}{MAPS}")
 }
 
 /// What is printed as JSON.
