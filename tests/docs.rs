@@ -2,6 +2,7 @@
 //! `FURRIER_UPDATE=1 cargo test --release docs` writes them anew.
 
 use furrier::preset::Preset;
+use furrier::preset::keys::{Table, tables};
 use serde_json::Value;
 use std::fmt::Write;
 
@@ -64,84 +65,37 @@ fn the_preset_page_is_current() {
         writeln!(page, "| `{}` | {} | {} |", preset.name, preset.description, preset.size_m).unwrap();
     }
     page.push_str("\n`furrier presets show NAME` prints one with the sources of its numbers.\n");
-    let schema = schemars::schema_for!(Preset).to_value();
-    let defaults = serde_json::to_value(Preset::default()).unwrap();
-    table("", &schema, &defaults, &schema, &mut page);
+    for table in tables() {
+        add_table(&table, &mut page);
+    }
     keep("presets.md", &page);
 }
 
-/// Appends the keys of the object that `schema` describes, then the tables inside it.
-fn table(name: &str, schema: &Value, defaults: &Value, root: &Value, page: &mut String) {
-    let title = if name.is_empty() { "Keys at the top".to_owned() } else { format!("`[{name}]`") };
-    write!(page, "\n## {title}\n\n").unwrap();
-    if let Some(text) = schema["description"].as_str().filter(|_| !name.is_empty()) {
-        write!(page, "{}\n\n", one_line(text)).unwrap();
-    }
-    page.push_str("| key | default | what it is |\n|---|---|---|\n");
-    let (mut tables, mut lists) = (Vec::new(), Vec::new());
-    for (key, property) in schema["properties"].as_object().unwrap() {
-        let inner = resolved(property, root);
-        let text = property["description"].as_str().or(inner["description"].as_str()).unwrap_or_default();
-        if inner["properties"].is_object() {
-            tables.push((key, inner));
-            continue;
-        }
-        let (text, choices) = (one_line(text), choices(inner));
-        let item = resolved(&property["items"], root);
-        if item["properties"].is_object() {
-            lists.push((key, item));
-        }
-        // What an entry of a list must say has no default.
-        let required = schema["required"].as_array().is_some_and(|keys| keys.contains(&key.as_str().into()));
-        let default = defaults.get(key).or(property.get("default")).unwrap_or(&Value::Null);
-        let default = if required { "must be given".to_owned() } else { toml_text(default) };
-        writeln!(page, "| `{key}` | {default} | {text}{choices} |").unwrap();
-    }
-    for (key, inner) in tables {
-        let path = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
-        table(&path, inner, &defaults[key], root, page);
-    }
-    for (key, item) in lists {
-        table(&format!("[{name}.{key}]"), item, &Value::Null, root, page);
-    }
-}
-
-/// `schema`, or the definition it points to.
-fn resolved<'a>(schema: &'a Value, root: &'a Value) -> &'a Value {
-    let target = schema["$ref"].as_str().or(schema["allOf"][0]["$ref"].as_str());
-    target.map_or(schema, |path| root.pointer(path.trim_start_matches('#')).unwrap())
-}
-
-/// What the variants of an enum mean, as sentences to follow its description.
-fn choices(schema: &Value) -> String {
-    let variants = schema["oneOf"].as_array().into_iter().flatten();
-    let mut text = String::new();
-    for variant in variants {
-        let keyed = variant["properties"].as_object().and_then(|p| p.keys().next());
-        let key = variant["const"].as_str().map(|name| format!("`\"{name}\"`"));
-        let key = key.or(keyed.map(|name| format!("`{{ {name} = … }}`"))).unwrap();
-        let meaning = variant["description"].as_str().unwrap_or_default();
-        write!(text, "<br>{key}: {}", one_line(meaning)).unwrap();
-    }
-    text
-}
-
-fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|")
-}
-
-/// A default as one would write it in TOML; nothing where there is none.
-fn toml_text(value: &Value) -> String {
-    let plain = match value {
-        Value::Null => return "none".to_owned(),
-        Value::String(text) if text.is_empty() => return "none".to_owned(),
-        Value::Object(entries) => {
-            let inner: Vec<_> = entries.iter().map(|(key, value)| format!("{key} = {}", short(value))).collect();
-            format!("{{ {} }}", inner.join(", "))
-        }
-        other => short(other),
+/// Appends a table's keys.
+fn add_table(table: &Table, page: &mut String) {
+    // Entries of lists are written as TOML has them.
+    let title = match table.name.strip_suffix("[0]") {
+        _ if table.name.is_empty() => "Keys at the top".to_owned(),
+        Some(list) => format!("`[[{list}]]`"),
+        None => format!("`[{}]`", table.name),
     };
-    format!("`{plain}`")
+    if table.keys.is_empty() {
+        return;
+    }
+    write!(page, "\n## {title}\n\n").unwrap();
+    if !table.what.is_empty() {
+        write!(page, "{}\n\n", cell(&table.what)).unwrap();
+    }
+    page.push_str("| key | default | value | what it is |\n|---|---|---|---|\n");
+    for key in &table.keys {
+        let name = key.key.strip_prefix(&table.name).unwrap_or(&key.key).trim_start_matches('.');
+        let default = key.default.as_ref().map_or("none".to_owned(), |value| format!("`{}`", short(value)));
+        writeln!(page, "| `{name}` | {default} | {} | {} |", cell(&key.expected()), cell(&key.what)).unwrap();
+    }
+}
+
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
 }
 
 /// JSON text, its numbers as the 32-bit floats they are.

@@ -342,6 +342,7 @@ fn placed(
     let thinner = ["guard.density_per_cm2=4".to_owned(), "undercoat.density_per_cm2=100".to_owned()];
     let grown = Grown::new(&PictureRequest {
         input: path.to_str().unwrap().to_owned(),
+        reading: Default::default(),
         preset: furrier::preset::Preset::load("mink").unwrap().with_settings(&thinner).unwrap(),
         materials: vec![],
         units: furrier::bake::units::Units::Auto,

@@ -144,6 +144,7 @@ fn hold_asset(input: &str, pose: Option<(String, f64)>) {
     let preset = Preset::load("mink").unwrap().with_settings(&["guard.density_per_cm2=60".to_owned()]).unwrap();
     let request = PictureRequest {
         input: input.to_owned(),
+        reading: Default::default(),
         preset,
         materials: Vec::new(),
         units: furrier::bake::units::Units::Auto,

@@ -9,6 +9,7 @@
 mod accuracy;
 mod architecture;
 mod atlas;
+mod axes;
 mod bake;
 mod circles;
 mod cli;
@@ -54,6 +55,7 @@ mod ribbons;
 mod runtime;
 mod scenes;
 mod seams;
+mod settings;
 mod shaders;
 mod shadow_map;
 mod shadows;
@@ -62,6 +64,7 @@ mod sphere;
 mod squares;
 mod stage;
 mod strand_files;
+mod strip;
 mod summary;
 #[cfg(target_os = "linux")]
 mod surface;

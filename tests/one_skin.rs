@@ -29,6 +29,7 @@ pub fn thin(settings: &[&str]) -> Preset {
 pub fn baked(input: &Path, out: &Path, preset: &Preset, method: Method) -> (Asset, Coat) {
     let request = Request {
         input: input.to_string_lossy().into_owned(),
+        reading: Default::default(),
         out: out.to_owned(),
         preset: preset.clone(),
         presets: vec![],
@@ -46,6 +47,7 @@ pub fn baked(input: &Path, out: &Path, preset: &Preset, method: Method) -> (Asse
 pub fn grown(input: &Path, preset: &Preset) -> Grown {
     Grown::new(&PictureRequest {
         input: input.to_string_lossy().into_owned(),
+        reading: Default::default(),
         preset: preset.clone(),
         materials: vec![],
         units: Units::Metres,

@@ -24,6 +24,7 @@ fn creature(pose: Option<f64>) -> picture::Grown {
     let thinner = ["guard.density_per_cm2=60".to_owned(), "undercoat.density_per_cm2=3000".to_owned()];
     picture::Grown::new(&PictureRequest {
         input: "sample:creature".into(),
+        reading: Default::default(),
         preset: preset.with_settings(&thinner).unwrap(),
         materials: vec![],
         units: Units::Auto,

@@ -172,6 +172,7 @@ fn a_whorl_turns_hair_where_it_says_and_one_that_misses_is_told() {
     let bake = |preset: Preset| {
         let request = Request {
             input: "sample:sphere".into(),
+            reading: Default::default(),
             out: folder.path().join("sphere.glb"),
             preset: preset.with_settings(&["shells.texture_size=16".into(), "shells.layers=2".into()]).unwrap(),
             presets: vec![],

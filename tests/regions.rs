@@ -44,6 +44,7 @@ fn baked_as(input: &Path, folder: &Path, own: &str, fallback: Fallback) -> (asse
     let out = folder.join("out.glb");
     let request = Request {
         input: input.to_string_lossy().into_owned(),
+        reading: Default::default(),
         out: out.clone(),
         preset: Preset::load(&folder.join(own).to_string_lossy()).unwrap(),
         presets: vec![],

@@ -121,6 +121,7 @@ fn strays_on_a_hat(b: Vec3, span: f32, shadow: impl Fn(&MeanShadow<'_>, &Scene<'
     preset.undercoat.shape.clump.strength = 0.0;
     let request = PictureRequest {
         input: "sample:hat".to_owned(),
+        reading: Default::default(),
         preset,
         materials: Vec::new(),
         units: Units::Auto,

@@ -42,6 +42,7 @@ fn preset(more: &[&str]) -> Preset {
 fn request(preset: Preset, out: &std::path::Path) -> Request {
     Request {
         input: "sample:sphere".into(),
+        reading: Default::default(),
         out: out.to_owned(),
         preset,
         presets: vec![],
@@ -90,6 +91,7 @@ fn drawn(preset: &Preset, show: Show, width_m: f32) -> f32 {
 fn strands(preset: &Preset, width_m: f32) -> f32 {
     let grown = Grown::new(&PictureRequest {
         input: "sample:sphere".into(),
+        reading: Default::default(),
         preset: preset.clone(),
         materials: vec![],
         units: Units::Auto,

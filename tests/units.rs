@@ -231,6 +231,7 @@ fn baked(input: &Path, materials: &[&str], preset: &str) -> (Asset, Baked) {
     let few = few.into_iter().chain(["shells.texture_size=16", "fins.texture_width=16", "fins.texture_height=16"]);
     let request = Request {
         input: input.to_string_lossy().into(),
+        reading: Default::default(),
         out: folder.path().join("out.glb"),
         preset: Preset::load(preset).unwrap().with_settings(&few.map(str::to_owned).collect::<Vec<_>>()).unwrap(),
         presets: vec![],

@@ -2,6 +2,7 @@
 
 use super::glb;
 use super::json::At;
+use super::origin::Origin;
 use crate::error::{Error, Result};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -19,13 +20,15 @@ pub struct Document {
     pub folder: Option<PathBuf>,
     /// Every file that was read.
     pub files: Vec<PathBuf>,
+    /// The bytes of the glTF file that it was read from; none for what was made of something else.
+    pub origin: Option<Origin>,
 }
 
 impl Document {
     /// An empty document for meshes made in code.
     pub fn made(name: &str) -> Self {
         let json = json!({"asset": {"version": "2.0", "generator": "furrier"}});
-        Self { json, binary: Vec::new(), name: PathBuf::from(name), folder: None, files: Vec::new() }
+        Self { json, binary: Vec::new(), name: PathBuf::from(name), folder: None, files: Vec::new(), origin: None }
     }
 
     pub(super) fn root(&self) -> At<'_> {

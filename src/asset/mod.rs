@@ -2,6 +2,7 @@
 //! else unchanged; its triangle primitives are the [`Part`]s that fur grows on.
 
 mod accessor;
+pub mod axes;
 pub mod coat;
 pub mod document;
 mod encode;
@@ -13,6 +14,7 @@ pub mod ktx2;
 pub mod material;
 mod meshopt;
 mod obj;
+mod origin;
 mod parse;
 pub mod part;
 pub mod pose;
@@ -35,6 +37,7 @@ pub use pose::{Pose, Posed};
 pub use select::{is_bare, select};
 
 use crate::error::Result;
+use crate::math::DMat3;
 use scene_graph::SceneGraph;
 use std::path::Path;
 
@@ -43,7 +46,7 @@ use std::path::Path;
 pub struct Asset {
     /// The file.
     pub document: Document,
-    /// Nodes and skins.
+    /// Nodes and skins, and which way up they are.
     pub scene: SceneGraph,
     /// What fur can grow on.
     pub parts: Vec<Part>,
@@ -53,27 +56,55 @@ pub struct Asset {
     pub warnings: Vec<String>,
 }
 
+/// How an input is to be read.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reading {
+    /// Turns the file's axes so that its up is +y and its front looks to +z ([`axes::upright`]). The asset is combed, lit and
+    /// seen that way; what is written keeps the file's own. None where these are glTF's.
+    pub upright: Option<DMat3>,
+    /// Whether a coat that the input wears already is taken off first.
+    pub rebake: bool,
+}
+
 /// Reads a `.glb`, `.gltf` or `.obj` file, or `sample:NAME`, a mesh made in code.
 ///
 /// # Errors
 /// Names file, field, value found and what would have been accepted. Nothing outside the input's folder is opened.
 pub fn load(input: &str) -> Result<Asset> {
-    let mut warnings = Vec::new();
-    let document = if let Some(name) = input.strip_prefix("sample:") {
-        sample::document(name)?
-    } else {
-        let path = Path::new(input);
-        let mut read = || {
-            let bytes = uri::read_file(path)?;
-            if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj")) {
-                return obj::read(&bytes, path, &mut warnings);
-            }
-            Document::parse(&bytes, path, &mut warnings)
-        };
-        read().map_err(|error| error.with_file(path))?
+    load_as(input, &Reading::default())
+}
+
+/// As [`load`], in a way of one's own.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_as(input: &str, reading: &Reading) -> Result<Asset> {
+    let (mut document, mut warnings) = match input.strip_prefix("sample:") {
+        Some(name) => (sample::document(name)?, Vec::new()),
+        None => read_document(Path::new(input))?,
     };
+    if reading.rebake {
+        document = coat::bared(document, &mut warnings)?;
+    }
     let name = document.name.clone();
-    Asset::new(document, warnings).map_err(|error| error.with_file(name))
+    Asset::standing(document, warnings, reading.upright).map_err(|error| error.with_file(name))
+}
+
+/// The document of a file, and what was odd about it.
+///
+/// # Errors
+/// As [`load`].
+pub fn read_document(path: &Path) -> Result<(Document, Vec<String>)> {
+    let mut warnings = Vec::new();
+    let mut read = || {
+        let bytes = uri::read_file(path)?;
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj")) {
+            return obj::read(&bytes, path, &mut warnings);
+        }
+        Document::parse(&bytes, path, &mut warnings)
+    };
+    let document = read().map_err(|error| error.with_file(path))?;
+    Ok((document, warnings))
 }
 
 impl Asset {
@@ -81,8 +112,13 @@ impl Asset {
     ///
     /// # Errors
     /// Names what cannot be used.
-    pub fn new(mut document: Document, warnings: Vec<String>) -> Result<Self> {
-        let scene = SceneGraph::of(&document)?;
+    pub fn new(document: Document, warnings: Vec<String>) -> Result<Self> {
+        Self::standing(document, warnings, None)
+    }
+
+    /// As [`Self::new`], with the axes of a document that has others than glTF's turned by `upright`.
+    fn standing(mut document: Document, warnings: Vec<String>, upright: Option<DMat3>) -> Result<Self> {
+        let scene = SceneGraph { upright, ..SceneGraph::of(&document)? };
         let mut notes = repair::Notes { warnings, mended: Vec::new() };
         let (parts, diagonal_units) = part::collect(&document, &scene, &mut notes)?;
         repair::apply(&mut document, &mut notes)?;

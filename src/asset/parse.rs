@@ -1,6 +1,7 @@
 //! A glTF document from bytes: its buffers joined and decoded, and nothing left unchecked.
 
 use super::document::Document;
+use super::origin::Origin;
 use super::{glb, meshopt, uri, validate};
 use crate::error::{Error, Result};
 use serde_json::{Value, json};
@@ -36,13 +37,14 @@ impl Document {
                 .with_hint("the file is damaged or its exporter faulty; export it again")
         })?;
         let folder = path.parent().map(|p| if p.as_os_str().is_empty() { PathBuf::from(".") } else { p.to_owned() });
-        let mut document =
-            Self { json, binary: Vec::new(), name: path.to_owned(), folder, files: vec![path.to_owned()] };
+        let (name, files) = (path.to_owned(), vec![path.to_owned()]);
+        let mut document = Self { json, binary: Vec::new(), name, folder, files, origin: None };
         document.check_version()?;
         document.check_required()?;
         document.join_buffers(chunk)?;
         meshopt::decode(&mut document, warnings)?;
         validate::document(&document)?;
+        document.origin = Some(Origin::of(bytes, chunk, text.len(), &document.binary));
         Ok(document)
     }
 

@@ -3,7 +3,7 @@
 use super::document::Document;
 use super::json::At;
 use crate::error::{Error, Result};
-use crate::math::{DMat4, DQuat, DVec3};
+use crate::math::{DMat3, DMat4, DQuat, DVec3};
 
 /// A node's own transform.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +69,8 @@ pub struct SceneGraph {
     pub shown: Vec<usize>,
     /// Per skin: joints and their inverse bind matrices.
     pub skins: Vec<Skin>,
+    /// Turns the file's axes to those of the world, y up and z forward; none where they are the same.
+    pub upright: Option<DMat3>,
 }
 
 /// Joints of a skin.
@@ -120,12 +122,19 @@ impl SceneGraph {
         Ok(scene)
     }
 
+    /// World coordinates of a place in the file's.
+    pub fn world_from_file(&self, place: DVec3) -> DVec3 {
+        self.upright.map_or(place, |turn| turn * place)
+    }
+
     /// World matrix of every node, given every node's own.
     pub fn world(&self, local: &[Local]) -> Vec<DMat4> {
         let mut world = vec![DMat4::IDENTITY; local.len()];
+        let upright = self.upright.map(DMat4::from_mat3);
         for &i in &self.order {
             let own = local[i].matrix();
-            world[i] = self.parent[i].map_or(own, |p| world[p] * own);
+            let standing = || upright.map_or(own, |turn| turn * own);
+            world[i] = self.parent[i].map_or_else(standing, |p| world[p] * own);
         }
         world
     }
@@ -140,7 +149,7 @@ impl SceneGraph {
     /// # Errors
     /// Names the node whose matrix flattens what hangs on it.
     pub fn check_invertible(&self, node: usize, world: &DMat4) -> Result<()> {
-        let linear = crate::math::DMat3::from_mat4(*world);
+        let linear = DMat3::from_mat4(*world);
         let size = linear.x_axis.length().max(linear.y_axis.length()).max(linear.z_axis.length());
         let determinant = linear.determinant();
         if determinant.is_finite() && determinant.abs() > 1e-12 * size.powi(3) && size > 0.0 {

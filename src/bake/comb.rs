@@ -89,7 +89,7 @@ impl<'a> Brush<'a> {
     fn point_m(&self, place: Place) -> Vec3 {
         let units = match place {
             Place::Relative(share) => self.low + (self.high - self.low) * Vec3::from(share).as_dvec3(),
-            Place::Units(units) => DVec3::from(units),
+            Place::Units(units) => self.asset.scene.world_from_file(DVec3::from(units)),
         };
         ((units - self.origin) * self.scale.metres_per_unit).as_vec3()
     }

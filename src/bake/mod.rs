@@ -15,7 +15,7 @@ mod wear;
 mod weld;
 
 use crate::asset::coat::{Fallback, refuse_second, write_coat};
-use crate::asset::{self, Asset, Part};
+use crate::asset::{self, Asset, Part, Reading};
 use crate::coat::axes::axes;
 use crate::coat::hair::{TileHair, leaning};
 use crate::coat::judge::{CoverageRow, Effort, coverage_table};
@@ -58,6 +58,8 @@ pub enum Method {
 pub struct Request {
     /// A file, or `sample:NAME`.
     pub input: String,
+    /// How it is read.
+    pub reading: Reading,
     /// Where the result goes.
     pub out: PathBuf,
     /// Preset of all materials without one of their own.
@@ -134,7 +136,7 @@ impl Steps<'_> {
 /// When the input cannot be used, names something that is not there, or the output cannot be written.
 pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Baked> {
     let mut steps = Steps { tell, steps: timing::Steps::default() };
-    let mut asset = steps.run("read", || asset::load(&request.input))?;
+    let mut asset = steps.run("read", || asset::load_as(&request.input, &request.reading))?;
     refuse_second(&asset)?;
     refuse_own_input(&request.input, &request.out)?;
     let chosen = asset::select(&asset.parts, &request.materials)?;

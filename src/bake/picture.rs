@@ -4,7 +4,7 @@ use super::skin::{self, Groomed, Role};
 use super::units::{self, Units};
 use super::weld;
 use crate::asset::strands::Export;
-use crate::asset::{self, Asset, Pose};
+use crate::asset::{self, Asset, Pose, Reading};
 use crate::coat::hair::TileHair;
 use crate::coat::primitive::{is_furred, offset_over_height};
 use crate::data::camera::Camera;
@@ -16,7 +16,7 @@ use crate::fur::groom::refine::{Finest, refine};
 use crate::fur::grow;
 use crate::hybrid::device::{self, Device, Drawn};
 use crate::hybrid::{self, Picture, Settings};
-use crate::math::{DVec3, Vec3};
+use crate::math::{DMat3, DVec3, Vec3};
 use crate::preset::Preset;
 use crate::reference;
 use crate::reference::walk::{self, Walked};
@@ -44,6 +44,8 @@ pub enum Only {
 pub struct PictureRequest {
     /// A file, or `sample:NAME`.
     pub input: String,
+    /// How it is read.
+    pub reading: Reading,
     /// Preset of all furred materials.
     pub preset: Preset,
     /// Materials to fur; empty for all that are not by name bare.
@@ -68,6 +70,8 @@ pub struct Grown {
     skin_factor: Vec3,
     only: Only,
     metres_per_unit: f64,
+    /// As in [`Reading::upright`].
+    upright: Option<DMat3>,
     /// What cameras and lights need to know of the asset. It is that of the rest pose, so that a camera stands still while an
     /// animation plays.
     pub subject: Subject,
@@ -81,7 +85,7 @@ impl Grown {
     /// # Errors
     /// When the input cannot be used or names something that is not there.
     pub fn new(request: &PictureRequest) -> Result<Self> {
-        let asset = asset::load(&request.input)?;
+        let asset = asset::load_as(&request.input, &request.reading)?;
         let chosen = asset::select(&asset.parts, &request.materials)?;
         let preset = &request.preset;
         let scale = units::scale(request.units, preset, &asset, &chosen, request.input.starts_with("sample:"))?;
@@ -125,6 +129,7 @@ impl Grown {
             skin_factor: Vec3::from(preset.colour.skin),
             only: request.only,
             metres_per_unit: scale.metres_per_unit,
+            upright: asset.scene.upright,
             groomed,
             subject: asset.subject(scale.metres_per_unit, |part, v| hair_m[part][v])?,
             notes,
@@ -143,7 +148,13 @@ impl Grown {
 
     /// The guard hairs, to be written to a file; `name` is what they are called there.
     pub fn export<'a>(&'a self, name: &'a str) -> Export<'a> {
-        Export { strands: &self.guard.0, origin_m: self.origin_m(), metres_per_unit: self.metres_per_unit, name }
+        Export {
+            strands: &self.guard.0,
+            origin_m: self.origin_m(),
+            metres_per_unit: self.metres_per_unit,
+            file_from_world: self.upright.map_or(DMat3::IDENTITY, |turn| turn.transpose()),
+            name,
+        }
     }
 
     /// What the renderer needs.

@@ -1,7 +1,9 @@
 //! `furrier bake`.
 
+use super::axes::AxesArgs;
 use super::console::Console;
 use super::output;
+use crate::asset::Reading;
 use crate::asset::coat::Fallback;
 use crate::bake::units::Units;
 use crate::bake::{Baked, Laid, Method, Request, bake};
@@ -16,17 +18,7 @@ use std::path::{Path, PathBuf};
 
 /// Grow a coat on a mesh and write the furry asset
 #[derive(Debug, Args)]
-#[command(after_long_help = "\
-Examples:
-  furrier bake sample:creature -o creature.glb
-      a built-in mesh; the others are cylinder, hat, sphere, torus and plane
-  furrier bake cat.glb -o furry-cat.glb --preset short-cat
-  furrier bake deer.glb -o furry-deer.glb --material Body --set guard.length.mm=30
-      fur on one material only, its guard hair 30 mm long
-  furrier bake doll.gltf -o doll.glb --preset plush --preset Hair=sheep --report doll.json
-      two materials dressed differently; times, sizes and errors written down
-  furrier bake room.obj -o room.glb --units cm --fallback none
-      a file in centimetres, for an engine that reads the extension itself")]
+#[command(after_long_help = after_help())]
 pub struct Bake {
     /// A .glb, .gltf or .obj file, or sample:NAME
     input: String,
@@ -47,6 +39,11 @@ pub struct Bake {
     /// part of a figure, as a hat is, it takes the unit that makes the figure as large as an animal or a person
     #[arg(long, value_enum, default_value_t = UnitName::Auto)]
     units: UnitName,
+    #[command(flatten)]
+    axes: AxesArgs,
+    /// Take off the coat that the input wears already, as `furrier strip` does, and bake a new one
+    #[arg(long)]
+    rebake: bool,
     /// How the skin is laid out in the plane: patches grown along the hair, charts with texels of their own, or the
     /// asset's own UVs
     #[arg(long, value_enum, default_value_t = Layout::Lapped)]
@@ -102,6 +99,32 @@ pub(super) enum Layout {
     Lapped,
     Atlas,
     Uv,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  furrier bake sample:creature -o creature.glb
+      a built-in mesh; the others are cylinder, hat, sphere, torus and plane
+  furrier bake cat.glb -o furry-cat.glb --preset short-cat
+  furrier bake deer.glb -o furry-deer.glb --material Body --set guard.length.mm=30
+      fur on one material only, its guard hair 30 mm long
+  furrier bake doll.gltf -o doll.glb --preset plush --preset Hair=sheep --report doll.json
+      two materials dressed differently; times, sizes and errors written down
+  furrier bake room.obj -o room.glb --units cm --fallback none
+      a file in centimetres, for an engine that reads the extension itself
+  furrier bake scan.obj -o scan.glb --up z
+      a scan that stands along z, combed as an animal that stands
+";
+
+const MAPS: &str = "
+Painted maps, over the first UV set: --set maps.length=FILE.png, maps.density, maps.colour, maps.comb, maps.clump.
+`furrier presets keys` prints every key of a preset, `furrier presets keys maps` these. Worked examples: docs/recipes.md.";
+
+/// Examples, the presets there are, and where painting is told.
+fn after_help() -> String {
+    let width = Preset::names().map(str::len).max().unwrap_or(0);
+    let presets: String = Preset::descriptions().map(|(name, text)| format!("  {name:width$}  {text}\n")).collect();
+    format!("{EXAMPLES}\nPresets:\n{presets}{MAPS}")
 }
 
 /// What is printed as JSON.
@@ -193,6 +216,7 @@ impl Bake {
         }
         Ok(Request {
             input: self.input.clone(),
+            reading: Reading { rebake: self.rebake, ..self.axes.reading()? },
             out: self.output.clone(),
             preset,
             presets,

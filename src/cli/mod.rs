@@ -1,5 +1,6 @@
 //! Floor 10: the command line. One file per subcommand: parse, call the library, print.
 
+mod axes;
 mod bake;
 mod compare;
 mod completions;
@@ -13,6 +14,7 @@ mod progress;
 mod render;
 mod report;
 mod stage;
+mod strip;
 mod view;
 
 use crate::error::{Kind, Result};
@@ -47,6 +49,7 @@ enum Command {
     View(view::View),
     Inspect(inspect::Inspect),
     Compare(compare::Compare),
+    Strip(strip::Strip),
     Presets(presets::Presets),
     Devices(devices::Devices),
     Completions(completions::Completions),
@@ -103,6 +106,7 @@ impl Command {
             Self::View(command) => command.run(console),
             Self::Compare(command) => command.run(console),
             Self::Inspect(command) => command.run(console),
+            Self::Strip(command) => command.run(console),
             Self::Presets(command) => command.run(console),
             Self::Devices(command) => command.run(console),
             Self::Completions(command) => command.run(console),

@@ -1,5 +1,6 @@
 //! `furrier render`.
 
+use super::axes::AxesArgs;
 use super::bake::UnitName;
 use super::console::Console;
 use super::output;
@@ -60,6 +61,8 @@ pub struct Render {
     /// What a unit of the file means
     #[arg(long, value_enum, default_value = "auto")]
     units: UnitName,
+    #[command(flatten)]
+    axes: AxesArgs,
     #[command(flatten)]
     stage: StageArgs,
     /// Let the environment's light fall on the undercoat too, not on guard hair and skin alone
@@ -199,6 +202,7 @@ impl Render {
     fn request(&self) -> Result<PictureRequest> {
         Ok(PictureRequest {
             input: self.input.clone(),
+            reading: self.axes.reading()?,
             preset: Preset::load(&self.preset)?.with_settings(&self.settings)?,
             materials: self.materials.clone(),
             units: self.units.units(),

@@ -1,5 +1,6 @@
 //! `furrier view`.
 
+use super::axes::AxesArgs;
 use super::console::Console;
 use super::output;
 use super::stage::StageArgs;
@@ -37,6 +38,8 @@ pub struct View {
     show: String,
     #[command(flatten)]
     stage: StageArgs,
+    #[command(flatten)]
+    axes: AxesArgs,
     /// A mesh to lay beside or into the fur, in the asset's units and axes: grey and opaque, it hides what it covers and casts
     /// its shadow; the camera is framed without it
     #[arg(long, value_name = "FILE|sample:NAME")]
@@ -80,7 +83,7 @@ impl View {
         if let Some(report) = &self.report {
             output::check(report, &[&read[..], &[&self.screenshot]].concat())?;
         }
-        let (asset, coat) = asset::coat::read_coat(&self.file)?;
+        let (asset, coat) = asset::coat::read_coat_as(&self.file, &self.axes.reading()?)?;
         let shot = match self.turntable {
             Some(views) => viewer::turntable(&asset, &coat, &options, views)?,
             None => viewer::screenshot(&asset, &coat, &options)?,
@@ -105,6 +108,7 @@ impl View {
     }
 
     fn options(&self) -> Result<ViewOptions> {
+        let reading = self.axes.reading()?;
         Ok(ViewOptions {
             device: self.device.parse::<Choice>()?,
             stage: self.stage.options()?,
@@ -112,7 +116,7 @@ impl View {
             moment: self.animation.clone().map(|name| (name, self.time.unwrap_or(0.0))),
             level: self.level,
             shadow_map: !self.no_shadow,
-            occluder: self.occluder.as_deref().map(asset::load).transpose()?,
+            occluder: self.occluder.as_deref().map(|file| asset::load_as(file, &reading)).transpose()?,
             ..ViewOptions::default()
         })
     }

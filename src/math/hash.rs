@@ -13,6 +13,12 @@ pub fn combine(seed: u64, value: u64) -> u64 {
     mix(seed ^ mix(value))
 }
 
+/// A hash of bytes in their order: tells whether they changed, not who changed them.
+pub fn bytes(bytes: &[u8]) -> u64 {
+    let word = |chunk: &[u8]| chunk.iter().rev().fold(0, |word, &byte| (word << 8) | u64::from(byte));
+    bytes.chunks(8).fold(mix(bytes.len() as u64), |state, chunk| mix(state ^ word(chunk)))
+}
+
 /// Uniform in [0, 1) from the upper 24 bits of a hash.
 pub fn unit_f32(hash: u64) -> f32 {
     (hash >> 40) as f32 * (1.0 / 16_777_216.0)

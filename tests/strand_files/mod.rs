@@ -8,7 +8,7 @@ use crate::scenes;
 use assert_cmd::Command;
 use furrier::asset::strands::{Export, Format, encode};
 use furrier::data::strands::Strands;
-use furrier::math::{DVec3, Vec3};
+use furrier::math::{DMat3, DVec3, Vec3};
 
 fn some_hair() -> Strands {
     let (mut guard, undercoat) = scenes::mink();
@@ -17,7 +17,13 @@ fn some_hair() -> Strands {
 }
 
 fn export(strands: &Strands) -> Export<'_> {
-    Export { strands, origin_m: DVec3::new(1000.0, -2.0, 0.5), metres_per_unit: 0.01, name: "2 bent skins" }
+    Export {
+        strands,
+        origin_m: DVec3::new(1000.0, -2.0, 0.5),
+        metres_per_unit: 0.01,
+        file_from_world: DMat3::IDENTITY,
+        name: "2 bent skins",
+    }
 }
 
 /// A point of the hair in the file's units.

@@ -61,6 +61,7 @@ undercoat = [[1.0,1.0,1.0],[1.0,1.0,1.0],[1.0,1.0,1.0]]\nvariation = 0.0\nskin =
     std::fs::write(&file, square(edge_m)).unwrap();
     Grown::new(&PictureRequest {
         input: file.to_str().unwrap().to_owned(),
+        reading: Default::default(),
         preset: Preset::from_toml(&preset).unwrap(),
         materials: Vec::new(),
         units: Units::Metres,

@@ -305,6 +305,7 @@ pub fn baked(input: &str) -> Vec<u8> {
     let out = folder.path().join("out.glb");
     let request = Request {
         input: input.to_owned(),
+        reading: Default::default(),
         out: out.clone(),
         preset: Preset::load("fox").and_then(|p| p.with_settings(&settings.map(str::to_owned))).expect("a preset"),
         presets: vec![],

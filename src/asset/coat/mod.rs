@@ -2,17 +2,25 @@
 
 mod fallback;
 mod flatten;
+mod input;
 mod parts;
 mod pool;
+mod ranges;
 mod read;
 mod shells;
+mod references;
+mod strip;
 mod textures;
+mod worn;
 mod write;
 
 pub use fallback::Fallback;
 pub use flatten::shells as flatten_shells;
-pub use read::{coat_of, read_coat};
-pub use write::{refuse_second, with_coat, write_coat};
+pub use input::Input;
+pub use read::{coat_of, read_coat, read_coat_as};
+pub use strip::{Stripped, bared, strip};
+pub use worn::{Worn, refuse_second};
+pub use write::{with_coat, write_coat, write_stripped};
 
 pub use super::extension::NAME;
 

@@ -4,7 +4,7 @@ use super::parts::{check, part_of};
 use super::{NAME, VERSION, textures};
 use crate::asset::json::At;
 use crate::asset::material::texture_of;
-use crate::asset::{self, Asset, Part};
+use crate::asset::{self, Asset, Part, Reading};
 use crate::data::coat::{Blend, Coat, CoatPrimitive, FinEdge, Tile};
 use crate::data::shell::{above_of_transmittance, code_above};
 use crate::error::{Error, Result};
@@ -20,7 +20,15 @@ const LAST_OF_TRANSMITTANCE: usize = 2;
 /// # Errors
 /// When the file cannot be read, has no coat, or one that contradicts itself.
 pub fn read_coat(path: &Path) -> Result<(Asset, Coat)> {
-    let asset = asset::load(&path.to_string_lossy())?;
+    read_coat_as(path, &Reading::default())
+}
+
+/// As [`read_coat`], in a way of one's own.
+///
+/// # Errors
+/// As [`read_coat`].
+pub fn read_coat_as(path: &Path, reading: &Reading) -> Result<(Asset, Coat)> {
+    let asset = asset::load_as(&path.to_string_lossy(), reading)?;
     let coat = coat_of(&asset).map_err(|error| error.with_file(path))?;
     Ok((asset, coat))
 }

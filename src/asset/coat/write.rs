@@ -1,11 +1,15 @@
 //! A coat into a document, and the document into files.
 
 use super::fallback::{self, Fallback};
+use super::input::{self, Input};
 use super::parts::{check, part_of, set_extension};
 use super::pool::pools;
+use super::strip::Stripped;
+use super::worn::refuse_second;
 use super::{NAME, VERSION, textures};
 use crate::asset::document::Document;
 use crate::asset::encode::{Use, numbers};
+use crate::asset::glb::is_glb;
 use crate::asset::image::media_type;
 use crate::asset::{Asset, write};
 use crate::data::coat::{Coat, CoatPrimitive};
@@ -15,36 +19,76 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// Writes the asset with its coat to `out`, a `.glb`, or a `.gltf` with a `.bin` beside it. Gives what the user should
-/// know: images that were taken along, or that were not there.
+/// know: images that were taken along, or that were not there, and whether the input can be given back.
 ///
 /// # Errors
 /// When the coat does not fit the asset, or the output cannot be written; then no output is left behind.
 pub fn write_coat(asset: &Asset, coat: &Coat, fallback: Fallback, out: &Path) -> Result<Vec<String>> {
-    let extension = out.extension().map(|e| e.to_string_lossy().to_lowercase());
-    let text = match extension.as_deref() {
-        Some("glb") => false,
-        Some("gltf") => true,
-        _ => {
-            return Err(Error::usage("the output must be glTF")
-                .with_file(out)
-                .with_found(extension.unwrap_or_else(|| "no extension".into()))
-                .with_expected(".glb or .gltf"));
-        }
-    };
+    let text = is_text(out)?;
     write::check_target(out, &asset.document.files)?;
     let mut document = with_coat(asset, coat, fallback)?;
-    let beside = text && same_folder(out, asset.document.folder.as_deref());
-    let notes = if beside { Vec::new() } else { take_images_along(&mut document)? };
+    let mut notes = bring_images(&mut document, out, text)?;
+    notes.extend(input::store(&mut document)?);
+    write_document(document, out, text)?;
+    Ok(notes)
+}
+
+/// Writes what is left of a document without its coat to `out`: the input's bytes where they are there and of the same kind
+/// of file. Gives whether they were, and what the user should know.
+///
+/// # Errors
+/// When the output cannot be written.
+pub fn write_stripped(stripped: Stripped, out: &Path) -> Result<(bool, Vec<String>)> {
+    let text = is_text(out)?;
+    let Stripped { mut document, input, mut notes, .. } = stripped;
+    write::check_target(out, &document.files)?;
+    let why = match input {
+        Input::Whole(bytes) if is_glb(&bytes) != text => {
+            write::whole(out, &bytes, &document.files)?;
+            notes.extend(input::files_beside(&bytes, out)?);
+            return Ok((true, notes));
+        }
+        Input::Whole(_) if text => "the input was a .glb",
+        Input::Whole(_) => "the input was a .gltf",
+        Input::Lost(why) => why,
+    };
+    notes.push(format!("these are not the bytes of the input: {why}"));
+    notes.extend(bring_images(&mut document, out, text)?);
+    write_document(document, out, text)?;
+    Ok((false, notes))
+}
+
+/// Whether `out` is a `.gltf`, a text with its data beside it, by its ending.
+fn is_text(out: &Path) -> Result<bool> {
+    let extension = out.extension().map(|e| e.to_string_lossy().to_lowercase());
+    match extension.as_deref() {
+        Some("glb") => Ok(false),
+        Some("gltf") => Ok(true),
+        _ => Err(Error::usage("the output must be glTF")
+            .with_file(out)
+            .with_found(extension.unwrap_or_else(|| "no extension".into()))
+            .with_expected(".glb or .gltf")),
+    }
+}
+
+/// Copies images that lie in files into the buffer, unless the output lies beside them.
+fn bring_images(document: &mut Document, out: &Path, text: bool) -> Result<Vec<String>> {
+    let beside = text && same_folder(out, document.folder.as_deref());
+    if beside { Ok(Vec::new()) } else { take_images_along(document) }
+}
+
+fn write_document(mut document: Document, out: &Path, text: bool) -> Result<()> {
     if !text {
-        write::whole(out, &document.to_glb()?, &asset.document.files)?;
-        return Ok(notes);
+        return write::whole(out, &document.to_glb()?, &document.files);
+    }
+    if document.binary.is_empty() {
+        return write::whole(out, &to_text(&document.json)?, &document.files);
     }
     let binary = out.with_extension("bin");
     let name = binary.file_name().unwrap_or_default().to_string_lossy();
     document.json["buffers"][0]["uri"] = json!(percent_encoding::utf8_percent_encode(&name, UNSAFE).to_string());
     let json = to_text(&document.json)?;
-    write::all(&[(binary, &document.binary), (out.to_owned(), &json)], &asset.document.files)?;
-    Ok(notes)
+    write::all(&[(binary, &document.binary), (out.to_owned(), &json)], &document.files)
 }
 
 /// What a URI may not hold as it is.
@@ -94,22 +138,6 @@ fn take_images_along(document: &mut Document) -> Result<Vec<String>> {
         notes.push(format!("image {uri} was copied into the output"));
     }
     Ok(notes)
-}
-
-/// Fails where the asset has a coat already: worth asking before a long bake.
-///
-/// # Errors
-/// Names the extension.
-pub fn refuse_second(asset: &Asset) -> Result<()> {
-    if asset.document.root().get("extensions").is_none_or(|e| e.get(NAME).is_none()) {
-        return Ok(());
-    }
-    Err(Error::input("the input has a coat already")
-        .with_file(&asset.document.name)
-        .with_field(format!("extensions.{NAME}"))
-        .with_found("a coat")
-        .with_expected("an asset without one")
-        .with_hint("bake from the file that this one was made from"))
 }
 
 /// The asset's document with the coat added: all that is new stands behind what was there.

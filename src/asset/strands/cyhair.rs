@@ -8,7 +8,7 @@ use crate::error::Result;
 const ALL_ARRAYS: u32 = 1 | 2 | 4 | 8 | 16;
 
 /// Text at the header's end, at most 88 bytes.
-const ABOUT: &[u8] = b"furrier: guard hair, Y up, units of the input; its undercoat is a volume, not in here";
+const ABOUT: &[u8] = b"furrier: guard hair, axes and units of the input; its undercoat is a volume, not in here";
 
 pub(super) fn encode(export: &Export<'_>) -> Result<Vec<u8>> {
     let strands = export.strands;
@@ -30,7 +30,7 @@ pub(super) fn encode(export: &Export<'_>) -> Result<Vec<u8>> {
     out.extend(std::iter::repeat_n(segments.to_le_bytes(), strands.len()).flatten());
     let mut floats = |value: f32| out.extend(value.to_le_bytes());
     for &point_m in &strands.points_m {
-        let point = (export.origin_m + point_m.as_dvec3()) / export.metres_per_unit;
+        let point = export.in_file(export.origin_m + point_m.as_dvec3());
         point.as_vec3().to_array().into_iter().for_each(&mut floats);
     }
     points(export).for_each(|point| floats(point.diameter));

@@ -5,7 +5,7 @@ mod usda;
 
 use crate::data::strands::Strands;
 use crate::error::{Error, Kind, Result};
-use crate::math::{DVec3, Vec3};
+use crate::math::{DMat3, DVec3, Vec3};
 use std::path::Path;
 
 /// Hairs and the units they are written in: those of the input, so that they stand on it as it is.
@@ -17,6 +17,8 @@ pub struct Export<'a> {
     pub origin_m: DVec3,
     /// Length of a unit of the file, m.
     pub metres_per_unit: f64,
+    /// Turns the world to the axes of the input.
+    pub file_from_world: DMat3,
     /// What the hairs are called in the file; letters, digits and underscores survive.
     pub name: &'a str,
 }
@@ -24,9 +26,9 @@ pub struct Export<'a> {
 /// A file format of curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// USD, text: linear BasisCurves with widths, displayColor and displayOpacity at every point; Y up.
+    /// USD, text: linear BasisCurves with widths, displayColor and displayOpacity at every point.
     Usda,
-    /// Cem Yuksel's HAIR: points, thickness, transparency and colour at every point; world axes, Y up.
+    /// Cem Yuksel's HAIR: points, thickness, transparency and colour at every point.
     CyHair,
 }
 
@@ -56,6 +58,13 @@ pub fn encode(export: &Export<'_>, format: Format) -> Result<Vec<u8>> {
     match format {
         Format::Usda => usda::encode(export),
         Format::CyHair => cyhair::encode(export),
+    }
+}
+
+impl Export<'_> {
+    /// A vector of the world, m, in axes and units of the file.
+    fn in_file(&self, vector_m: DVec3) -> DVec3 {
+        self.file_from_world * vector_m / self.metres_per_unit
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Export, counted, points};
 use crate::error::{Error, Kind, Result};
-use crate::math::Vec3;
+use crate::math::{DVec3, Vec3};
 use std::fmt::{self, Display, Write};
 
 pub(super) fn encode(export: &Export<'_>) -> Result<Vec<u8>> {
@@ -17,13 +17,15 @@ pub(super) fn encode(export: &Export<'_>) -> Result<Vec<u8>> {
 fn write(export: &Export<'_>, out: &mut String) -> fmt::Result {
     let strands = export.strands;
     let scale = export.metres_per_unit;
-    let [x, y, z] = (export.origin_m / scale).to_array();
-    let local = |p: Vec3| (p.as_dvec3() / scale).as_vec3();
+    let [x, y, z] = export.in_file(export.origin_m).to_array();
+    let local = |p: Vec3| export.in_file(p.as_dvec3()).as_vec3();
+    // USD knows files with y or z up.
+    let up = if export.in_file(DVec3::Y).z > 0.0 { "Z" } else { "Y" };
     let name = identifier(export.name);
     write!(
         out,
         "#usda 1.0\n(\n    defaultPrim = \"{name}\"\n    doc = \"Guard hair grown by furrier, as polylines. Its \
-         undercoat is a volume and not in this file.\"\n    metersPerUnit = {scale}\n    upAxis = \"Y\"\n)\n\n\
+         undercoat is a volume and not in this file.\"\n    metersPerUnit = {scale}\n    upAxis = \"{up}\"\n)\n\n\
          def Xform \"{name}\" (\n    kind = \"component\"\n)\n{{\n    double3 xformOp:translate = ({x}, {y}, {z})\n    \
          uniform token[] xformOpOrder = [\"xformOp:translate\"]\n\n    def BasisCurves \"GuardHair\"\n    {{\n"
     )?;

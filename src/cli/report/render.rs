@@ -1,7 +1,7 @@
 //! `furrier report render`.
 
 use super::checked_outputs;
-use crate::asset::write;
+use crate::asset::{Reading, write};
 use crate::bake::picture::{Grown, Only, PictureRequest};
 use crate::cli::bake::UnitName;
 use crate::cli::console::Console;
@@ -64,6 +64,7 @@ impl Render {
         let reference = self.reference.as_ref().map(load_named).transpose()?;
         let grown = Grown::new(&PictureRequest {
             input: self.input.clone(),
+            reading: Reading::default(),
             preset: Preset::load(&self.preset)?.with_settings(&self.settings)?,
             materials: Vec::new(),
             units: self.units.units(),

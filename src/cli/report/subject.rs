@@ -1,5 +1,6 @@
 //! What a report on a coat is of: an asset, how it is furred, and how large its pictures are.
 
+use crate::asset::Reading;
 use crate::asset::coat::Fallback;
 use crate::bake::picture::{Only, PictureRequest};
 use crate::bake::{Method, Request, bake};
@@ -114,6 +115,7 @@ impl Subject {
             let baked = bake(
                 &Request {
                     input: self.input.clone(),
+                    reading: Reading::default(),
                     out: out.clone(),
                     preset,
                     presets: Vec::new(),
@@ -135,6 +137,7 @@ impl Subject {
     pub fn picture(&self, preset: Preset) -> PictureRequest {
         PictureRequest {
             input: self.input.clone(),
+            reading: Reading::default(),
             preset,
             materials: self.materials.clone(),
             units: self.units.units(),

@@ -42,8 +42,10 @@ impl Length {
 #[serde(default, deny_unknown_fields)]
 pub struct Curl {
     /// Radius of the helix, mm, 0 for straight hair.
+    #[schemars(range(min = 0.0, max = 1e3))]
     pub radius_mm: f32,
     /// Windings from root to tip.
+    #[schemars(range(min = 0.0, max = 20.0))]
     pub turns: f32,
 }
 
@@ -52,8 +54,10 @@ pub struct Curl {
 #[serde(default, deny_unknown_fields)]
 pub struct Clump {
     /// Mean distance between clump centres, mm.
+    #[schemars(range(min = 1e-2, max = 1e3))]
     pub spacing_mm: f32,
-    /// How far tips move towards their clump's centre, in [0, 1].
+    /// How far tips move towards their clump's centre.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub strength: f32,
 }
 
@@ -61,13 +65,17 @@ pub struct Clump {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Shape {
-    /// Standard deviation of length over its mean, in [0, 0.5].
+    /// Standard deviation of length over its mean.
+    #[schemars(range(min = 0.0, max = 0.5))]
     pub length_variation: f32,
-    /// How much more the tip leans along the comb than the root, degrees in [0, 120].
+    /// How much more the tip leans along the comb than the root, degrees.
+    #[schemars(range(min = 0.0, max = 120.0))]
     pub bend_deg: f32,
-    /// Standard deviation of each hair's own lean in both tangent directions, degrees in [0, 45].
+    /// Standard deviation of each hair's own lean in both tangent directions, degrees.
+    #[schemars(range(min = 0.0, max = 45.0))]
     pub jitter_deg: f32,
-    /// Sideways wander between root and tip over length, in [0, 0.5].
+    /// Sideways wander between root and tip over length.
+    #[schemars(range(min = 0.0, max = 0.5))]
     pub noise: f32,
     /// Helix.
     pub curl: Curl,
@@ -80,14 +88,19 @@ pub struct Shape {
 #[serde(default, deny_unknown_fields)]
 pub struct Guard {
     /// Hairs per cm² of skin, 0 for none.
+    #[schemars(range(min = 0.0, max = 1e6))]
     pub density_per_cm2: f32,
     /// Mean length along the hair.
+    #[schemars(extend("mm" = [1e-3, 1e4], "relative" = [1e-5, 2.0]))]
     pub length: Length,
     /// Diameter at the root, µm.
+    #[schemars(range(min = 0.1, max = 1e5))]
     pub diameter_um: f32,
-    /// Diameter at the tip over that at the root, in [0, 1].
+    /// Diameter at the tip over that at the root.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub taper: f32,
-    /// Transparency at the very tip, in [0, 1]; grows exponentially along the hair.
+    /// Transparency at the very tip; grows exponentially along the hair.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub tip_transparency: f32,
     /// Shape.
     pub shape: Shape,
@@ -98,10 +111,13 @@ pub struct Guard {
 #[serde(default, deny_unknown_fields)]
 pub struct Undercoat {
     /// Hairs per cm² of skin, 0 for none.
+    #[schemars(range(min = 0.0, max = 1e6))]
     pub density_per_cm2: f32,
     /// Mean length along the hair.
+    #[schemars(extend("mm" = [1e-3, 1e4], "relative" = [1e-5, 2.0]))]
     pub length: Length,
     /// Diameter, µm.
+    #[schemars(range(min = 0.1, max = 1e5))]
     pub diameter_um: f32,
     /// Shape.
     pub shape: Shape,
@@ -113,9 +129,11 @@ pub struct Undercoat {
 pub struct Groom {
     /// Direction of the comb.
     pub comb: Comb,
-    /// Mean lean away from the normal along the comb, degrees in [0, 75].
+    /// Mean lean away from the normal along the comb, degrees.
+    #[schemars(range(min = 0.0, max = 75.0))]
     pub lean_deg: f32,
-    /// How far gravity pulls the lean towards the ground, in [0, 1].
+    /// How far gravity pulls the lean towards the ground.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub gravity: f32,
     /// Points that hair turns around; where two reach, the nearer in terms of its reach decides.
     pub whorls: Vec<Whorl>,
@@ -142,14 +160,19 @@ pub struct Colour {
     /// Where hair takes its colour from; a colour map decides before either.
     pub from: ColourSource,
     /// The preset's own hair colour.
+    #[schemars(inner(range(min = 0.0, max = 1.0)))]
     pub tint: [f32; 3],
     /// Factors along a guard hair: root, middle, tip.
+    #[schemars(inner(inner(range(min = 0.0, max = 1.0))))]
     pub guard: [[f32; 3]; 3],
     /// Factors along an undercoat hair: root, middle, tip.
+    #[schemars(inner(inner(range(min = 0.0, max = 1.0))))]
     pub undercoat: [[f32; 3]; 3],
-    /// Relative spread of brightness from hair to hair, in [0, 1].
+    /// Relative spread of brightness from hair to hair.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub variation: f32,
     /// Factor on the tint for the skin under the hair.
+    #[schemars(inner(range(min = 0.0, max = 1.0)))]
     pub skin: [f32; 3],
 }
 

@@ -1,6 +1,5 @@
 //! A fibre as a preset writes it.
 
-use crate::error::{Error, Result};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -21,17 +20,23 @@ pub enum FibreModel {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FibreParameters {
-    /// Index of refraction, 1.1 to 2; keratin has 1.55.
+    /// Index of refraction; keratin has 1.55.
+    #[schemars(range(min = 1.1, max = 2.0))]
     pub index: f32,
-    /// Roughness along the hair, 0.1 to 1: the width of highlights (β_m of Chiang et al. 2016).
+    /// Roughness along the hair: the width of highlights (β_m of Chiang et al. 2016).
+    #[schemars(range(min = 0.1, max = 1.0))]
     pub roughness: f32,
-    /// Roughness around the hair, 0.1 to 1 (β_n).
+    /// Roughness around the hair (β_n).
+    #[schemars(range(min = 0.1, max = 1.0))]
     pub azimuthal_roughness: f32,
-    /// Tilt of the cuticle's scales, degrees, 0 to 10.
+    /// Tilt of the cuticle's scales.
+    #[schemars(range(min = 0.0, max = 10.0))]
     pub tilt_deg: f32,
-    /// Diameter of the medulla over the hair's, 0 to 0.95.
+    /// Diameter of the medulla over the hair's.
+    #[schemars(range(min = 0.0, max = 0.95))]
     pub medulla: f32,
-    /// Scatterings per hair radius of way through the medulla, 0 to 20.
+    /// Scatterings per hair radius of way through the medulla.
+    #[schemars(range(min = 0.0, max = 20.0))]
     pub scattering: f32,
 }
 
@@ -47,45 +52,9 @@ pub struct Fibres {
     pub undercoat: FibreParameters,
 }
 
-impl Fibres {
-    /// Checks every number against its range.
-    ///
-    /// # Errors
-    /// Names the first key out of range.
-    pub fn check(&self) -> Result<()> {
-        self.guard.check("fibre.guard")?;
-        self.undercoat.check("fibre.undercoat")
-    }
-}
-
 impl Default for FibreParameters {
     /// A furred animal's: keratin, scales tilted as Marschner et al. 2003 measured, a wide medulla full of air.
     fn default() -> Self {
         Self { index: 1.55, roughness: 0.3, azimuthal_roughness: 0.4, tilt_deg: 3.0, medulla: 0.6, scattering: 1.2 }
-    }
-}
-
-impl FibreParameters {
-    /// Checks every number against its range; `table` is what the preset calls it.
-    ///
-    /// # Errors
-    /// Names the first key out of range.
-    pub fn check(&self, table: &str) -> Result<()> {
-        for (key, value, low, high) in [
-            ("index", self.index, 1.1, 2.0),
-            ("roughness", self.roughness, 0.1, 1.0),
-            ("azimuthal_roughness", self.azimuthal_roughness, 0.1, 1.0),
-            ("tilt_deg", self.tilt_deg, 0.0, 10.0),
-            ("medulla", self.medulla, 0.0, 0.95),
-            ("scattering", self.scattering, 0.0, 20.0),
-        ] {
-            if !(low..=high).contains(&value) {
-                return Err(Error::usage("a preset value is out of range")
-                    .with_field(format!("{table}.{key}"))
-                    .with_found(value)
-                    .with_expected(format!("a number from {low} to {high}")));
-            }
-        }
-        Ok(())
     }
 }

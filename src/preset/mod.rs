@@ -1,5 +1,9 @@
 //! Floor 6: every step's parameters in one place, as TOML.
 
+pub mod keys;
+mod path;
+mod settings;
+
 use crate::coat::fins::FinParameters;
 use crate::coat::shells::ShellParameters;
 use crate::error::{Error, Result};
@@ -73,6 +77,7 @@ pub struct Preset {
     /// One line on what it is.
     pub description: String,
     /// Bounding diagonal of the animal or thing that the lengths describe, m; every preset must give it.
+    #[schemars(range(min = 0.001, max = 1000.0))]
     pub size_m: f32,
     /// Guard hair.
     pub guard: Guard,
@@ -100,21 +105,29 @@ pub struct Preset {
 const LARGEST_FILE: u64 = 1 << 20;
 
 const BUILT_IN: &[(&str, &str)] = &[
-    ("bear", include_str!("../presets/bear.toml")),
-    ("fox", include_str!("../presets/fox.toml")),
-    ("grass", include_str!("../presets/grass.toml")),
-    ("mink", include_str!("../presets/mink.toml")),
-    ("otter-wet", include_str!("../presets/otter-wet.toml")),
-    ("plush", include_str!("../presets/plush.toml")),
-    ("rabbit", include_str!("../presets/rabbit.toml")),
-    ("sheep", include_str!("../presets/sheep.toml")),
-    ("short-cat", include_str!("../presets/short-cat.toml")),
+    ("bear", include_str!("../../presets/bear.toml")),
+    ("fox", include_str!("../../presets/fox.toml")),
+    ("grass", include_str!("../../presets/grass.toml")),
+    ("mink", include_str!("../../presets/mink.toml")),
+    ("otter-wet", include_str!("../../presets/otter-wet.toml")),
+    ("plush", include_str!("../../presets/plush.toml")),
+    ("rabbit", include_str!("../../presets/rabbit.toml")),
+    ("sheep", include_str!("../../presets/sheep.toml")),
+    ("short-cat", include_str!("../../presets/short-cat.toml")),
 ];
 
 impl Preset {
     /// Names of the built-in presets.
     pub fn names() -> impl Iterator<Item = &'static str> {
         BUILT_IN.iter().map(|(name, _)| *name)
+    }
+
+    /// Names of the built-in presets, and what each says it is.
+    pub fn descriptions() -> impl Iterator<Item = (&'static str, String)> {
+        BUILT_IN.iter().map(|(name, text)| {
+            let table: toml::Table = toml::from_str(text).unwrap_or_default();
+            (*name, table.get("description").and_then(toml::Value::as_str).unwrap_or_default().to_owned())
+        })
     }
 
     /// The text of a built-in preset's file.
@@ -175,29 +188,6 @@ impl Preset {
         Ok(preset)
     }
 
-    /// This preset with settings of the form `table.key=value` applied in order. A value is TOML; a bare word is a
-    /// string. Setting a length in one unit drops it in the other.
-    ///
-    /// # Errors
-    /// Names the setting that is malformed, unknown or out of range.
-    pub fn with_settings(self, settings: &[String]) -> Result<Self> {
-        let fault = |setting: &str, found: &dyn std::fmt::Display| {
-            Error::usage("the setting is not valid")
-                .with_parameter("set")
-                .with_field(setting)
-                .with_found(found)
-                .with_hint("write table.key=value, as in `set` guard.length.mm=30; docs/presets.md lists the keys")
-        };
-        let mut preset = self;
-        for setting in settings {
-            let (key, value) = setting.split_once('=').ok_or_else(|| fault(setting, &"no `=`"))?;
-            let mut table = toml::Table::try_from(&preset).map_err(|e| fault(setting, &e))?;
-            set(&mut table, key.trim(), toml_value(value.trim())).map_err(|e| fault(setting, &e))?;
-            preset = table.try_into().map_err(|e: toml::de::Error| fault(setting, &e.message()))?;
-        }
-        preset.checked()
-    }
-
     /// Reads a preset from TOML. Unknown keys fail; every number is checked against its range.
     ///
     /// # Errors
@@ -206,7 +196,7 @@ impl Preset {
         let preset: Self = toml::from_str(text).map_err(|e| {
             Error::usage("the preset is not valid")
                 .with_found(e.to_string().trim_end())
-                .with_hint("`furrier presets show fox` prints a valid one; docs/presets.md lists every key")
+                .with_hint("`furrier presets show fox` prints a valid one, `furrier presets keys` every key")
         })?;
         preset.checked()
     }
@@ -216,57 +206,7 @@ impl Preset {
     /// # Errors
     /// Names the first key out of range.
     pub fn checked(self) -> Result<Self> {
-        let (g, u) = (&self.guard, &self.undercoat);
-        let ranges = [
-            ("size_m", self.size_m, 1e-3, 1e3),
-            ("guard.density_per_cm2", g.density_per_cm2, 0.0, 1e6),
-            ("guard.diameter_um", g.diameter_um, 0.1, 1e5),
-            ("guard.taper", g.taper, 0.0, 1.0),
-            ("guard.tip_transparency", g.tip_transparency, 0.0, 1.0),
-            ("undercoat.density_per_cm2", u.density_per_cm2, 0.0, 1e6),
-            ("undercoat.diameter_um", u.diameter_um, 0.1, 1e5),
-            ("groom.lean_deg", self.groom.lean_deg, 0.0, 75.0),
-            ("groom.gravity", self.groom.gravity, 0.0, 1.0),
-            ("colour.variation", self.colour.variation, 0.0, 1.0),
-        ];
-        let shapes = [("guard", &g.shape, g.length), ("undercoat", &u.shape, u.length)].into_iter().flat_map(
-            |(table, s, length)| {
-                let length = match length {
-                    crate::fur::groom::Length::Mm(mm) => ("length.mm", mm, 1e-3, 1e4),
-                    crate::fur::groom::Length::Relative(share) => ("length.relative", share, 1e-5, 2.0),
-                };
-                [
-                    length,
-                    ("shape.length_variation", s.length_variation, 0.0, 0.5),
-                    ("shape.bend_deg", s.bend_deg, 0.0, 120.0),
-                    ("shape.jitter_deg", s.jitter_deg, 0.0, 45.0),
-                    ("shape.noise", s.noise, 0.0, 0.5),
-                    ("shape.curl.radius_mm", s.curl.radius_mm, 0.0, 1e3),
-                    ("shape.curl.turns", s.curl.turns, 0.0, 20.0),
-                    ("shape.clump.spacing_mm", s.clump.spacing_mm, 1e-2, 1e3),
-                    ("shape.clump.strength", s.clump.strength, 0.0, 1.0),
-                ]
-                .map(|(key, value, low, high)| (format!("{table}.{key}"), value, low, high))
-            },
-        );
-        let colours = [
-            ("colour.tint", vec![self.colour.tint]),
-            ("colour.guard", self.colour.guard.to_vec()),
-            ("colour.undercoat", self.colour.undercoat.to_vec()),
-            ("colour.skin", vec![self.colour.skin]),
-        ];
-        let colours = colours.into_iter().flat_map(|(key, rows)| {
-            rows.into_iter().flatten().map(|v| (key.to_owned(), v, 0.0, 1.0)).collect::<Vec<_>>()
-        });
-        let plain = ranges.into_iter().map(|(key, v, low, high)| (key.to_owned(), v, low, high));
-        for (key, value, low, high) in plain.chain(shapes).chain(colours) {
-            if !(low..=high).contains(&value) {
-                return Err(Error::usage("a preset value is out of range")
-                    .with_field(key)
-                    .with_found(value)
-                    .with_expected(format!("a number from {low} to {high}")));
-            }
-        }
+        keys::check(&self)?;
         for (i, whorl) in self.groom.whorls.iter().enumerate() {
             whorl.check(&format!("groom.whorls[{i}]"))?;
         }
@@ -285,37 +225,6 @@ impl Preset {
         for (i, region) in self.regions.iter().enumerate() {
             region.check(i)?;
         }
-        self.fibre.check()?;
-        self.shells.check()?;
-        self.fins.check()?;
         Ok(self)
-    }
-}
-
-/// `text` as a TOML value, or as a string where it is none.
-fn toml_value(text: &str) -> toml::Value {
-    toml::from_str::<toml::Table>(&format!("value = {text}"))
-        .ok()
-        .filter(|table| table.len() == 1)
-        .and_then(|mut table| table.remove("value"))
-        .unwrap_or_else(|| toml::Value::String(text.to_owned()))
-}
-
-/// Puts `value` at the dotted `key` of `table`.
-fn set(table: &mut toml::Table, key: &str, value: toml::Value) -> std::result::Result<(), String> {
-    match key.split_once('.') {
-        None => {
-            table.insert(key.to_owned(), value);
-            Ok(())
-        }
-        Some((head, rest)) => {
-            let inner = table.entry(head).or_insert_with(|| toml::Value::Table(toml::Table::new()));
-            let inner = inner.as_table_mut().ok_or_else(|| format!("`{head}` is not a table"))?;
-            // A length is one value in one of two units, not a table of two.
-            if head == "length" {
-                inner.clear();
-            }
-            set(inner, rest, value)
-        }
     }
 }
