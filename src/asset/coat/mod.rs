@@ -3,15 +3,17 @@
 mod fallback;
 mod flatten;
 mod parts;
+mod place;
 mod pool;
 mod read;
 mod textures;
+mod vrm;
 mod write;
 
 pub use fallback::Fallback;
 pub use flatten::shells as flatten_shells;
 pub use read::{coat_of, read_coat};
-pub use write::{refuse_second, with_coat, write_coat};
+pub use write::{check_output, refuse_second, with_coat, write_coat};
 
 pub use super::extension::NAME;
 

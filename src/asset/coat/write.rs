@@ -7,31 +7,45 @@ use super::{NAME, VERSION, textures};
 use crate::asset::document::Document;
 use crate::asset::encode::{Use, numbers};
 use crate::asset::image::media_type;
-use crate::asset::{Asset, write};
+use crate::asset::{Asset, uri, write};
 use crate::data::coat::{Coat, CoatPrimitive};
 use crate::data::texture::Texture;
 use crate::error::{Error, Kind, Result};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Writes the asset with its coat to `out`, a `.glb`, or a `.gltf` with a `.bin` beside it. Gives what the user should
-/// know: images that were taken along, or that were not there.
+/// Checks, before any work is done, that `out` can be written: a glTF file, in a folder that exists, and none of `inputs`. Gives
+/// whether it is a text with a `.bin` beside it.
 ///
 /// # Errors
-/// When the coat does not fit the asset, or the output cannot be written; then no output is left behind.
-pub fn write_coat(asset: &Asset, coat: &Coat, fallback: Fallback, out: &Path) -> Result<Vec<String>> {
+/// Says what it is instead.
+pub fn check_output(out: &Path, inputs: &[PathBuf]) -> Result<bool> {
     let extension = out.extension().map(|e| e.to_string_lossy().to_lowercase());
     let text = match extension.as_deref() {
-        Some("glb") => false,
+        // An avatar is a GLB with members of its own.
+        Some("glb" | "vrm") => false,
         Some("gltf") => true,
         _ => {
             return Err(Error::usage("the output must be glTF")
                 .with_file(out)
                 .with_found(extension.unwrap_or_else(|| "no extension".into()))
-                .with_expected(".glb or .gltf"));
+                .with_expected(".glb, .gltf or .vrm"));
         }
     };
-    write::check_target(out, &asset.document.files)?;
+    write::check_target(out, inputs)?;
+    if text {
+        write::check_target(&out.with_extension("bin"), inputs)?;
+    }
+    Ok(text)
+}
+
+/// Writes the asset with its coat to `out`, a `.glb` or `.vrm`, or a `.gltf` with a `.bin` beside it. Gives what the user should
+/// know: images that were taken along, or that were not there.
+///
+/// # Errors
+/// When the coat does not fit the asset, or the output cannot be written; then no output is left behind.
+pub fn write_coat(asset: &Asset, coat: &Coat, fallback: Fallback, out: &Path) -> Result<Vec<String>> {
+    let text = check_output(out, &asset.document.files)?;
     let mut document = with_coat(asset, coat, fallback)?;
     let beside = text && same_folder(out, asset.document.folder.as_deref());
     let notes = if beside { Vec::new() } else { take_images_along(&mut document)? };
@@ -41,23 +55,11 @@ pub fn write_coat(asset: &Asset, coat: &Coat, fallback: Fallback, out: &Path) ->
     }
     let binary = out.with_extension("bin");
     let name = binary.file_name().unwrap_or_default().to_string_lossy();
-    document.json["buffers"][0]["uri"] = json!(percent_encoding::utf8_percent_encode(&name, UNSAFE).to_string());
+    document.json["buffers"][0]["uri"] = json!(uri::encode(&name));
     let json = to_text(&document.json)?;
     write::all(&[(binary, &document.binary), (out.to_owned(), &json)], &asset.document.files)?;
     Ok(notes)
 }
-
-/// What a URI may not hold as it is.
-const UNSAFE: &percent_encoding::AsciiSet = &percent_encoding::CONTROLS
-    .add(b' ')
-    .add(b'"')
-    .add(b'#')
-    .add(b'%')
-    .add(b'<')
-    .add(b'>')
-    .add(b'?')
-    .add(b'\\')
-    .add(b':');
 
 fn to_text(json: &Value) -> Result<Vec<u8>> {
     serde_json::to_vec(json).map_err(|error| Error::new(Kind::Output, format!("the JSON cannot be written: {error}")))
@@ -75,9 +77,17 @@ fn take_images_along(document: &mut Document) -> Result<Vec<String>> {
     for index in 0..document.count("images") {
         let uri = document.json["images"][index]["uri"].as_str().map(str::to_owned);
         let Some(uri) = uri.filter(|uri| !uri.starts_with("data:")) else { continue };
-        let Some(bytes) = document.image_bytes(index)? else {
-            notes.push(format!("images[{index}] ({uri}) is not there; the output still names it"));
-            continue;
+        let bytes = match document.image_bytes(index) {
+            Ok(Some(bytes)) => bytes,
+            Ok(None) => {
+                notes.push(format!("images[{index}] ({uri}) is not there; the output still names it"));
+                continue;
+            }
+            Err(error) => {
+                notes
+                    .push(format!("images[{index}] ({uri}) cannot be read: {}; the output still names it", error.what));
+                continue;
+            }
         };
         let Some(media) = media_type(&bytes) else {
             notes.push(format!("images[{index}] ({uri}) is of an unknown kind; the output still names it"));
