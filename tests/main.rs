@@ -21,6 +21,7 @@ mod crossing;
 mod defocus;
 mod docs;
 mod field;
+mod files;
 mod fins;
 mod formulas;
 mod gains;

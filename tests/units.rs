@@ -106,7 +106,7 @@ fn made(meshes: &[Vec<Piece>], rig: Rig) -> Asset {
 
 fn scaled(asset: &Asset, preset: &str, materials: &[&str], units: Units) -> Scale {
     let materials: Vec<String> = materials.iter().map(|&m| m.to_owned()).collect();
-    let chosen = asset::select(&asset.parts, &materials).unwrap();
+    let chosen = asset::select(&asset.parts, &materials).unwrap().parts;
     scale(units, &Preset::load(preset).unwrap(), asset, &chosen, false).unwrap()
 }
 

@@ -62,6 +62,28 @@ impl Document {
         0
     }
 
+    /// Names an extension among those used, once.
+    pub fn use_extension(&mut self, name: &str) {
+        let named =
+            self.json.get("extensionsUsed").and_then(Value::as_array).is_some_and(|used| used.contains(&json!(name)));
+        if !named {
+            self.push("extensionsUsed", json!(name));
+        }
+    }
+
+    /// Strikes an extension off the lists of those used and required.
+    pub fn forget_extension(&mut self, name: &str) {
+        let Some(root) = self.json.as_object_mut() else { return };
+        for key in ["extensionsRequired", "extensionsUsed"] {
+            if let Some(list) = root.get_mut(key).and_then(Value::as_array_mut) {
+                list.retain(|used| used != name);
+                if list.is_empty() {
+                    root.shift_remove(key);
+                }
+            }
+        }
+    }
+
     /// Appends bytes to the buffer, aligned to 8, as a new buffer view, and gives its index.
     pub fn push_view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
         self.binary.resize(self.binary.len().next_multiple_of(8), 0);
@@ -76,5 +98,15 @@ impl Document {
         }
         self.json["buffers"][0]["byteLength"] = json!(self.binary.len());
         self.push("bufferViews", view)
+    }
+}
+
+/// Removes an extension from what carries it.
+pub(super) fn drop_extension(owner: &mut Value, name: &str) {
+    if let Some(extensions) = owner.get_mut("extensions").and_then(Value::as_object_mut) {
+        extensions.shift_remove(name);
+        if extensions.is_empty() {
+            owner.as_object_mut().and_then(|object| object.shift_remove("extensions"));
+        }
     }
 }

@@ -6,6 +6,9 @@ const MAGIC: &[u8; 4] = b"glTF";
 const JSON: u32 = u32::from_le_bytes(*b"JSON");
 const BIN: u32 = u32::from_le_bytes(*b"BIN\0");
 
+/// What to try with files of the first version.
+pub const CONVERT_1: &str = "convert it first, for example with `npx gltf-pipeline -i in.gltf -o out.glb`";
+
 /// Whether `bytes` claim to be a GLB.
 pub fn is_glb(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
@@ -24,7 +27,8 @@ pub fn parse<'a>(bytes: &'a [u8], warnings: &mut Vec<String>) -> Result<(&'a [u8
         return Err(Error::input("only GLB version 2 can be read")
             .with_field("GLB version")
             .with_found(version)
-            .with_expected("2"));
+            .with_expected("2")
+            .with_hint(CONVERT_1));
     }
     if length as usize > bytes.len() {
         return Err(cut("GLB length", bytes.len(), length as usize));

@@ -1,5 +1,6 @@
 //! Images of a document: found, their size checked in the header, and only then decoded.
 
+use super::basis;
 use super::document::Document;
 use super::uri;
 use crate::data::image::Image8;
@@ -13,8 +14,11 @@ pub const MAX_SIDE: u32 = 16_384;
 /// Most pixels that are decoded (256 MiB as RGBA).
 pub const MAX_PIXELS: u64 = 1 << 26;
 
+/// What is said of an image of a kind that is not decoded.
+const FOREIGN: &str = "is neither PNG, JPEG, WebP nor KTX2";
+
 /// What there is to know of an image before decoding it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Found {
     /// Can be decoded.
     Usable {
@@ -25,8 +29,8 @@ pub enum Found {
     },
     /// The file it names is not there.
     Missing,
-    /// Neither PNG, JPEG nor WebP.
-    Foreign,
+    /// Of another kind, elsewhere or broken: what is the matter with it.
+    Unusable(String),
 }
 
 impl Document {
@@ -52,10 +56,22 @@ impl Document {
     /// # Errors
     /// When the header claims more pixels than are ever decoded.
     pub fn find_image(&self, index: usize) -> Result<Found> {
-        let Some(bytes) = self.image_bytes(index)? else { return Ok(Found::Missing) };
-        let Some(format) = format(&bytes) else { return Ok(Found::Foreign) };
-        let size = ImageReader::with_format(Cursor::new(&bytes), format).into_dimensions();
-        let (width, height) = size.map_err(|error| self.broken_image(index, &error))?;
+        // Nothing that lies elsewhere is opened; that alone is no reason to do without the rest.
+        let bytes = match self.image_bytes(index) {
+            Ok(Some(bytes)) => bytes,
+            Ok(None) => return Ok(Found::Missing),
+            Err(error) => return Ok(Found::Unusable(format!("cannot be read: {}", error.what))),
+        };
+        let (width, height) = if basis::is_ktx2(&bytes) {
+            match basis::size(&bytes) {
+                Ok([width, height]) => (width, height),
+                Err(fault) => return Ok(Found::Unusable(format!("is a KTX2 texture that cannot be decoded: {fault}"))),
+            }
+        } else {
+            let Some(format) = format(&bytes) else { return Ok(Found::Unusable(FOREIGN.into())) };
+            let size = ImageReader::with_format(Cursor::new(&bytes), format).into_dimensions();
+            size.map_err(|error| self.broken_image(index, &error))?
+        };
         if width.max(height) > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_PIXELS {
             return Err(Error::input("an image is too large")
                 .with_field(format!("images[{index}]"))
@@ -72,18 +88,19 @@ impl Document {
     /// When it is broken or too large.
     pub fn decode_image(&self, index: usize) -> Result<Option<Image8>> {
         let Found::Usable { .. } = self.find_image(index)? else { return Ok(None) };
-        let Some((bytes, format)) = self.image_bytes(index)?.and_then(|bytes| format(&bytes).map(|f| (bytes, f)))
-        else {
-            return Ok(None);
-        };
+        let Some(bytes) = self.image_bytes(index)? else { return Ok(None) };
+        if basis::is_ktx2(&bytes) {
+            return basis::decode(&bytes).map(Some).map_err(|fault| self.broken_image(index, &fault));
+        }
+        let Some(format) = format(&bytes) else { return Ok(None) };
         decode(&bytes, format).map(Some).map_err(|error| self.broken_image(index, &error))
     }
 
-    fn broken_image(&self, index: usize, error: &image::ImageError) -> Error {
+    fn broken_image(&self, index: usize, error: &dyn std::fmt::Display) -> Error {
         Error::input("an image cannot be decoded")
             .with_field(format!("images[{index}]"))
             .with_found(error)
-            .with_expected("a whole PNG, JPEG or WebP")
+            .with_expected("a whole PNG, JPEG, WebP or KTX2")
             .with_hint("save the image again")
     }
 }
@@ -122,6 +139,9 @@ fn format(bytes: &[u8]) -> Option<ImageFormat> {
 
 /// Media type of encoded image bytes, as glTF names it.
 pub fn media_type(bytes: &[u8]) -> Option<&'static str> {
+    if basis::is_ktx2(bytes) {
+        return Some("image/ktx2");
+    }
     Some(match format(bytes)? {
         ImageFormat::Png => "image/png",
         ImageFormat::Jpeg => "image/jpeg",

@@ -1,12 +1,42 @@
-//! The base colour of a part: what hair takes its colour from where a preset does not say otherwise.
+//! What a part's material says of it: the base colour, which hair takes where a preset does not say otherwise, and how it is shown.
 
 use super::document::Document;
 use super::image::Found;
 use super::json::At;
 use super::repair::Notes;
+use super::words::is_bare;
 use crate::data::texture::{Texture, Wrap};
 use crate::error::Result;
-use crate::math::{Vec2, Vec4};
+use crate::math::{Vec2, Vec3, Vec4};
+
+/// The older way to state a colour, which still stands in many files.
+const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
+
+/// What is read of a material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Its name; `material_3` for nameless ones, `default` where there is none.
+    pub name: String,
+    /// What hair takes its colour from by default.
+    pub base_colour: BaseColour,
+    /// Whether it shows both sides.
+    pub double_sided: bool,
+    /// Whether it lets through what is behind it.
+    pub alpha: Alpha,
+    /// Whether light does not change it (KHR_materials_unlit).
+    pub unlit: bool,
+}
+
+/// How a material uses the alpha of its colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Alpha {
+    /// Not at all.
+    Opaque,
+    /// To cut out.
+    Mask,
+    /// To let shine through.
+    Blend,
+}
 
 /// Base colour of a material.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,32 +54,114 @@ impl Default for BaseColour {
     }
 }
 
-impl BaseColour {
-    /// The base colour of material `index`; what is missing or cannot be decoded is left out and said.
+impl Material {
+    /// Material `index` of the document, or what stands for none.
     ///
     /// # Errors
-    /// Names images whose header claims too many pixels, or that lie outside the input's folder.
-    pub fn of(document: &Document, index: usize, notes: &mut Notes) -> Result<Self> {
-        let material = document.root().entry("materials", index)?;
-        let Some(pbr) = material.get("pbrMetallicRoughness") else { return Ok(Self::default()) };
-        let factor = pbr.get("baseColorFactor").map_or(Ok([1.0; 4]), |at| at.numbers::<4>())?;
-        let factor = Vec4::from_array(factor.map(|f| f as f32));
-        let mut texture = pbr.get("baseColorTexture").map(|slot| texture_of(document, &slot)).transpose()?.flatten();
-        if let Some(image) = texture.as_ref().map(|t| t.image) {
-            let uri = document.root().entry("images", image)?.get("uri").and_then(|u| u.value.as_str());
-            let name = uri.filter(|u| !u.starts_with("data:")).map_or(String::new(), |u| format!(" ({u})"));
-            let fault = match document.find_image(image)? {
-                Found::Usable { .. } => None,
-                Found::Missing => Some("is not there"),
-                Found::Foreign => Some("is neither PNG, JPEG nor WebP"),
-            };
-            if let Some(fault) = fault {
-                notes.warn(format!("images[{image}]{name} {fault}; the base colour factor is used alone"));
-                texture = None;
-            }
-        }
-        Ok(Self { factor, texture })
+    /// As [`BaseColour::of`].
+    pub fn of(document: &Document, index: Option<usize>, notes: &mut Notes) -> Result<Self> {
+        let mut material = Self {
+            name: "default".into(),
+            base_colour: BaseColour::default(),
+            double_sided: false,
+            alpha: Alpha::Opaque,
+            unlit: false,
+        };
+        let Some(index) = index else { return Ok(material) };
+        let at = document.root().entry("materials", index)?;
+        let name = at.get("name").and_then(|name| name.value.as_str()).filter(|name| !name.is_empty());
+        material.name = name.map_or_else(|| format!("material_{index}"), str::to_owned);
+        material.double_sided = at.get("doubleSided").is_some_and(|sided| sided.value.as_bool() == Some(true));
+        material.alpha = match at.get("alphaMode").and_then(|mode| mode.value.as_str()) {
+            Some("MASK") => Alpha::Mask,
+            Some("BLEND") => Alpha::Blend,
+            _ => Alpha::Opaque,
+        };
+        material.unlit = extension(&at, "KHR_materials_unlit").is_some();
+        material.base_colour = BaseColour::of(document, &at, &material.name, notes)?;
+        Ok(material)
     }
+}
+
+fn extension<'a>(owner: &At<'a>, name: &str) -> Option<At<'a>> {
+    owner.get("extensions").and_then(|extensions| extensions.get(name))
+}
+
+impl BaseColour {
+    /// The base colour of a material; what of it is missing or cannot be decoded is left out and said.
+    ///
+    /// # Errors
+    /// Names images whose header is broken or claims too many pixels, where fur may need them.
+    fn of(document: &Document, material: &At<'_>, name: &str, notes: &mut Notes) -> Result<Self> {
+        let glossiness = extension(material, GLOSSINESS);
+        let metallic = material.get("pbrMetallicRoughness");
+        let (owner, keys) = match &glossiness {
+            Some(glossiness) => (Some(glossiness), ["diffuseFactor", "diffuseTexture"]),
+            None => (metallic.as_ref(), ["baseColorFactor", "baseColorTexture"]),
+        };
+        let [factor, mut slot] = keys.map(|key| owner.and_then(|owner| owner.get(key)));
+        let factor = factor.map_or(Ok([1.0; 4]), |at| at.numbers::<4>())?;
+        let mut factor = Vec4::from_array(factor.map(|f| f as f32));
+        if owner.is_none() {
+            unread(material, name, notes);
+        }
+        // Where all colour glows, as flat pictures of older programs do, hair has that.
+        let glow = material.get("emissiveFactor").map_or(Ok([0.0; 3]), |at| at.numbers::<3>())?;
+        let glow = Vec3::from(glow.map(|f| f as f32));
+        let lamp = material.get("emissiveTexture").filter(|_| glow != Vec3::ZERO);
+        if glow != Vec3::ZERO && factor.truncate() == Vec3::ZERO {
+            notes.warn(format!(
+                "material {name:?}: its base colour is black and it glows; hair takes its emissive colour"
+            ));
+            (factor, slot) = (glow.extend(factor.w), lamp);
+        } else if slot.is_none() && lamp.is_some() {
+            notes.warn(format!(
+                "material {name:?}: its emissive texture is not read, its base colour factor is used alone"
+            ));
+        }
+        let Some(slot) = slot else { return Ok(Self { factor, texture: None }) };
+        let Some(texture) = texture_of(document, &slot)? else {
+            let fault = unknown_source(document, &slot)?;
+            notes.warn(format!("material {name:?}: its texture {fault}; the base colour factor is used alone"));
+            return Ok(Self { factor, texture: None });
+        };
+        let image = texture.image;
+        let uri = document.root().entry("images", image)?.get("uri").and_then(|u| u.value.as_str());
+        let file = uri.filter(|u| !u.starts_with("data:")).map_or(String::new(), |u| format!(" ({u})"));
+        let fault = match document.find_image(image) {
+            Ok(Found::Usable { .. }) => return Ok(Self { factor, texture: Some(texture) }),
+            Ok(Found::Missing) => "is not there".to_owned(),
+            Ok(Found::Unusable(fault)) => fault,
+            // What gets no fur is no reason to stop.
+            Err(error) if is_bare(name) => error.what,
+            Err(error) => return Err(error),
+        };
+        notes.warn(format!("images[{image}]{file} {fault}; the base colour factor of material {name:?} is used alone"));
+        Ok(Self { factor, texture: None })
+    }
+}
+
+/// Says where the colour of a material without any that is known may stand.
+fn unread(material: &At<'_>, name: &str, notes: &mut Notes) {
+    let members = material.get("extensions").and_then(|extensions| extensions.members().ok()).unwrap_or_default();
+    // These change how a base colour looks, and state none of their own.
+    let states_none = |name: &str| name.starts_with("KHR_materials_") && name != "KHR_materials_common";
+    let names: Vec<&str> = members.iter().map(|(name, _)| *name).filter(|name| !states_none(name)).collect();
+    if !names.is_empty() {
+        let names = names.join(", ");
+        notes.warn(format!("material {name:?}: what {names} says of its colour is not read; it is taken as white"));
+    }
+}
+
+/// What is wrong with a texture that shows no image that could be read.
+fn unknown_source(document: &Document, slot: &At<'_>) -> Result<String> {
+    let texture = document.root().entry("textures", slot.need("index")?.size()?)?;
+    let members = texture.get("extensions").and_then(|extensions| extensions.members().ok()).unwrap_or_default();
+    let names: Vec<&str> = members.iter().map(|(name, _)| *name).collect();
+    Ok(match names.is_empty() {
+        true => format!("({}) names no image", texture.path),
+        false => format!("({}) has an image for {} alone, which is not read", texture.path, names.join(", ")),
+    })
 }
 
 /// The texture that a slot names; none where it shows no image.
@@ -59,12 +171,13 @@ impl BaseColour {
 pub fn texture_of(document: &Document, slot: &At<'_>) -> Result<Option<Texture>> {
     let root = document.root();
     let texture = root.entry("textures", slot.need("index")?.size()?)?;
-    let webp = texture.get("extensions").and_then(|e| e.get("EXT_texture_webp")?.get("source"));
-    let Some(source) = webp.or_else(|| texture.get("source")) else { return Ok(None) };
+    let other = |name: &str| extension(&texture, name).and_then(|other| other.get("source"));
+    let source = other("EXT_texture_webp").or_else(|| texture.get("source")).or_else(|| other("KHR_texture_basisu"));
+    let Some(source) = source else { return Ok(None) };
     let image = source.index_into("images", document.count("images"))?;
     let index = slot.need("index")?.size()?;
     let mut found = Texture::plain(index, image, slot.size_or("texCoord", 0)?);
-    if let Some(transform) = slot.get("extensions").and_then(|e| e.get("KHR_texture_transform")) {
+    if let Some(transform) = extension(slot, "KHR_texture_transform") {
         let pair = |key: &str, default: Vec2| {
             transform.get(key).map_or(Ok(default), |at| at.numbers::<2>().map(|n| Vec2::new(n[0] as f32, n[1] as f32)))
         };

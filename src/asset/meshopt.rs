@@ -1,10 +1,10 @@
 //! Decodes EXT_meshopt_compression, so that everything downstream sees plain buffer views.
 
-use super::document::Document;
+use super::document::{Document, drop_extension};
 use super::json::At;
 use crate::error::{Error, Result};
 use bytemuck::{Pod, cast_slice, cast_slice_mut};
-use serde_json::{Value, json};
+use serde_json::json;
 
 const NAME: &str = "EXT_meshopt_compression";
 
@@ -40,29 +40,12 @@ pub fn decode(document: &mut Document, warnings: &mut Vec<String>) -> Result<()>
         let view = &mut document.json["bufferViews"][i];
         view["buffer"] = json!(0);
         view["byteOffset"] = json!(offset);
-        drop_extension(view);
+        drop_extension(view, NAME);
     }
     document.json["buffers"][0]["byteLength"] = json!(document.binary.len());
-    drop_extension(&mut document.json["buffers"][0]);
-    for key in ["extensionsRequired", "extensionsUsed"] {
-        let root = document.json.as_object_mut();
-        if let Some(list) = root.and_then(|root| root.get_mut(key)).and_then(Value::as_array_mut) {
-            list.retain(|name| name != NAME);
-            if list.is_empty() {
-                document.json.as_object_mut().and_then(|root| root.shift_remove(key));
-            }
-        }
-    }
+    drop_extension(&mut document.json["buffers"][0], NAME);
+    document.forget_extension(NAME);
     Ok(())
-}
-
-fn drop_extension(owner: &mut Value) {
-    if let Some(extensions) = owner.get_mut("extensions").and_then(Value::as_object_mut) {
-        extensions.shift_remove(NAME);
-        if extensions.is_empty() {
-            owner.as_object_mut().and_then(|object| object.shift_remove("extensions"));
-        }
-    }
 }
 
 fn decode_view(document: &Document, view: &At<'_>, extension: &At<'_>, total: &mut usize) -> Result<Vec<u8>> {

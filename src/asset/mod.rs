@@ -3,15 +3,19 @@
 
 mod accessor;
 pub mod axes;
+mod basis;
 pub mod coat;
 pub mod document;
+mod draco;
 mod encode;
 mod extension;
 mod glb;
 pub mod image;
 mod json;
 pub mod ktx2;
+mod lod;
 pub mod material;
+mod mend;
 mod meshopt;
 mod obj;
 mod origin;
@@ -26,15 +30,18 @@ mod select;
 pub mod stored;
 pub mod strands;
 mod subject;
+mod text;
 mod uri;
 mod validate;
+mod words;
 pub mod write;
 
 pub use coat::{Fallback, read_coat, write_coat};
 pub use document::Document;
 pub use part::Part;
 pub use pose::{Pose, Posed};
-pub use select::{is_bare, select};
+pub use select::{Selection, select};
+pub use words::is_bare;
 
 use crate::error::Result;
 use crate::math::DMat3;

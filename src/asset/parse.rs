@@ -2,14 +2,28 @@
 
 use super::document::Document;
 use super::origin::Origin;
-use super::{glb, meshopt, uri, validate};
+use super::{draco, glb, mend, meshopt, uri, validate};
 use crate::error::{Error, Result};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// Extensions that may be required: they are read here, or change nothing that matters to fur.
-const UNDERSTOOD: [&str; 4] =
-    ["KHR_mesh_quantization", "KHR_texture_transform", "EXT_meshopt_compression", "EXT_texture_webp"];
+const UNDERSTOOD: [&str; 11] = [
+    "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "EXT_texture_avif",
+    "EXT_texture_webp",
+    "KHR_animation_pointer",
+    "KHR_draco_mesh_compression",
+    "KHR_mesh_quantization",
+    "KHR_node_visibility",
+    "KHR_texture_basisu",
+    "KHR_texture_transform",
+    "MSFT_texture_dds",
+];
+
+/// What is said of files of the first version.
+const OF_VERSION_1: &str = "this is glTF 1.0, which is another format";
 
 impl Document {
     /// Reads `.glb` or `.gltf` bytes; `path` names them and tells where their buffers lie.
@@ -20,7 +34,7 @@ impl Document {
         let (text, chunk) = if glb::is_glb(bytes) {
             glb::parse(bytes, warnings)?
         } else if bytes.first().is_some_and(|b| b"{ \n\r\t\xEF".contains(b)) {
-            (bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes), &[][..])
+            (bytes, &[][..])
         } else {
             let start: String = bytes.iter().take(4).map(|b| std::ascii::escape_default(*b).to_string()).collect();
             return Err(Error::input("this is not a glTF file")
@@ -29,13 +43,7 @@ impl Document {
                 .with_expected("`glTF`, or `{` of a JSON text")
                 .with_hint("inputs are .glb, .gltf and .obj"));
         };
-        let json: Value = serde_json::from_slice(text).map_err(|error| {
-            Error::input("the JSON cannot be read")
-                .with_field("JSON")
-                .with_found(error)
-                .with_expected("valid JSON, nested at most 127 deep")
-                .with_hint("the file is damaged or its exporter faulty; export it again")
-        })?;
+        let json = mend::read(text, warnings)?;
         let folder = path.parent().map(|p| if p.as_os_str().is_empty() { PathBuf::from(".") } else { p.to_owned() });
         let (name, files) = (path.to_owned(), vec![path.to_owned()]);
         let mut document = Self { json, binary: Vec::new(), name, folder, files, origin: None };
@@ -43,6 +51,7 @@ impl Document {
         document.check_required()?;
         document.join_buffers(chunk)?;
         meshopt::decode(&mut document, warnings)?;
+        draco::decode(&mut document, warnings)?;
         validate::document(&document)?;
         document.origin = Some(Origin::of(bytes, chunk, text.len(), &document.binary));
         Ok(document)
@@ -50,10 +59,16 @@ impl Document {
 
     fn check_version(&self) -> Result<()> {
         let version = self.root().need("asset")?.need("version")?;
-        if version.text()?.starts_with("2.") {
+        // Some exporters write a number.
+        let stated = version.value.as_str().map_or_else(|| version.value.to_string(), str::to_owned);
+        if stated.starts_with("2.") || stated == "2" {
             return Ok(());
         }
-        Err(version.fault("2.0").with_hint("convert glTF 1 files to 2.0 first"))
+        let fault = version.fault("2.0");
+        if stated.starts_with('1') {
+            return Err(Error { what: OF_VERSION_1.into(), ..fault }.with_hint(glb::CONVERT_1));
+        }
+        Err(fault.with_hint("export it as glTF 2.0"))
     }
 
     fn check_required(&self) -> Result<()> {
@@ -62,18 +77,11 @@ impl Document {
             if UNDERSTOOD.contains(&name) || name.starts_with("KHR_materials_") || name == "KHR_lights_punctual" {
                 continue;
             }
-            let hint = match name {
-                "KHR_draco_mesh_compression" => {
-                    "decode it first, for example with `gltf-transform copy in.glb out.glb`"
-                }
-                "KHR_texture_basisu" => "export with PNG or JPEG textures",
-                _ => "export without this extension, or as optional",
-            };
             return Err(Error::input(format!("the file requires the extension {name}, which is not supported"))
                 .with_field(required.path.clone())
                 .with_found(name)
                 .with_expected(format!("one of {}, or KHR_materials_*", UNDERSTOOD.join(", ")))
-                .with_hint(hint));
+                .with_hint("export without this extension, or as optional"));
         }
         Ok(())
     }

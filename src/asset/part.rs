@@ -1,7 +1,8 @@
 //! What fur can grow on: one triangle primitive in its place in the world.
 
 use super::document::Document;
-use super::material::BaseColour;
+use super::json::At;
+use super::material::{Alpha, BaseColour, Material};
 use super::repair::Notes;
 use super::scene_graph::SceneGraph;
 use super::stored::Primitive;
@@ -17,7 +18,7 @@ pub struct Part {
     pub mesh: usize,
     /// Primitive of that mesh.
     pub primitive: usize,
-    /// Nodes that show the mesh; the rest pose is the first one's.
+    /// Nodes that show the mesh, or instances of them; the rest pose is the first one's.
     pub nodes: Vec<usize>,
     /// The skin of each of these nodes, where it has one.
     pub skins: Vec<Option<usize>>,
@@ -27,6 +28,14 @@ pub struct Part {
     pub base_colour: BaseColour,
     /// Whether its material shows both sides.
     pub double_sided: bool,
+    /// How its material uses alpha.
+    pub alpha: Alpha,
+    /// Whether light does not change its material.
+    pub unlit: bool,
+    /// Names of its mesh and nodes, where the mesh has no other part.
+    pub labels: Vec<String>,
+    /// Names of the material variants in which it has another material.
+    pub variants: Vec<String>,
     /// Vertex data in the primitive's own space.
     pub stored: Primitive,
     /// Middle of the whole scene, file units: the origin of every part's mesh.
@@ -36,13 +45,25 @@ pub struct Part {
 }
 
 impl Part {
-    /// Places a primitive in the rest pose of its first node; `world` has one matrix per node.
+    /// Places a primitive in the rest pose of the first node that does not flatten it, which then comes first; `world` has one
+    /// matrix per node.
     ///
     /// # Errors
-    /// Names the node or joint whose matrix flattens the mesh.
-    pub(super) fn place(mut self, scene: &SceneGraph, world: &[DMat4]) -> Result<Self> {
-        self.world_from_local = self.placement(scene, world, self.nodes[0], &self.stored)?;
-        Ok(self)
+    /// Names the node or joint whose matrix flattens the mesh, where all do.
+    fn place(mut self, scene: &SceneGraph, world: &[DMat4]) -> Result<Self> {
+        let mut flat = None;
+        for number in 0..self.nodes.len() {
+            match self.placement(scene, world, self.nodes[number], &self.stored) {
+                Ok(maps) => {
+                    self.world_from_local = maps;
+                    self.nodes.swap(0, number);
+                    self.skins.swap(0, number);
+                    return Ok(self);
+                }
+                Err(error) => drop(flat.get_or_insert(error)),
+            }
+        }
+        Err(flat.unwrap_or_else(|| Error::input("no node shows the mesh").with_field("nodes")))
     }
 
     /// Per vertex, or once for all: the affine map from the primitive's space to the world.
@@ -167,18 +188,25 @@ pub fn collect(document: &Document, scene: &SceneGraph, notes: &mut Notes) -> Re
     let world = scene.world(&scene.local);
     let mut instances: Vec<Vec<usize>> = vec![Vec::new(); document.count("meshes")];
     for &node in &scene.shown {
-        if let Some(mesh) = nodes[node].reference("mesh", "meshes", instances.len())? {
-            instances[mesh].push(node);
+        if let Some(mesh) = nodes[node].reference("mesh", "meshes", instances.len())?
+            && !scene.levels.coarser[node]
+        {
+            instances[mesh].extend(scene.placed(node));
         }
+    }
+    for note in &scene.levels.notes {
+        notes.warn(note.clone());
     }
     let mut parts = Vec::new();
     let mut passed_over = 0;
     let mut vertices = 0;
+    let mut flat = None;
     for (mesh, nodes_of) in instances.into_iter().enumerate().filter(|(_, nodes)| !nodes.is_empty()) {
         let at = root.entry("meshes", mesh)?;
         if super::extension::is_fallback(&at) {
             continue;
         }
+        let labels = labels(&at, nodes_of.iter().map(|&node| &nodes[scene.of_document(node)]))?;
         for (primitive, at) in at.list("primitives")?.iter().enumerate() {
             match at.size_or("mode", 4)? {
                 4..=6 => {}
@@ -188,7 +216,7 @@ pub fn collect(document: &Document, scene: &SceneGraph, notes: &mut Notes) -> Re
                 }
                 _ => return Err(at.need("mode")?.fault("0 to 6")),
             }
-            let skin_of = |&node: &usize| nodes[node].reference("skin", "skins", scene.skins.len());
+            let skin_of = |&node: &usize| nodes[scene.of_document(node)].reference("skin", "skins", scene.skins.len());
             let skins: Vec<Option<usize>> = nodes_of.iter().map(skin_of).collect::<Result<_>>()?;
             let joints = skins.iter().flatten().map(|&skin| scene.skins[skin].joints.len()).min();
             let stored = Primitive::read(document, at, joints, notes)?;
@@ -200,26 +228,46 @@ pub fn collect(document: &Document, scene: &SceneGraph, notes: &mut Notes) -> Re
             if u32::try_from(vertices).is_err() {
                 return Err(at.fault(&format!("at most {} vertices in all", u32::MAX)).with_hint("decimate the mesh"));
             }
-            let material = at.reference("material", "materials", document.count("materials"))?;
-            parts.push(
-                Part {
-                    mesh,
-                    primitive,
-                    nodes: nodes_of.clone(),
-                    skins,
-                    material_name: material_name(document, material)?,
-                    double_sided: material.map_or(Ok(false), |m| double_sided(document, m))?,
-                    base_colour: material.map_or(Ok(BaseColour::default()), |m| BaseColour::of(document, m, notes))?,
-                    stored,
-                    centre_units: DVec3::ZERO,
-                    world_from_local: Vec::new(),
+            let index = at.reference("material", "materials", document.count("materials"))?;
+            let material = Material::of(document, index, notes)?;
+            if let Some(texture) = material.base_colour.texture.as_ref().filter(|t| t.uv_set >= stored.uv_sets.len()) {
+                notes.warn(format!(
+                    "{}: the texture of material {:?} lies on TEXCOORD_{}, which it lacks; the base colour factor is used alone",
+                    at.path, material.name, texture.uv_set
+                ));
+            }
+            let part = Part {
+                mesh,
+                primitive,
+                nodes: nodes_of.clone(),
+                skins,
+                material_name: material.name,
+                double_sided: material.double_sided,
+                base_colour: material.base_colour,
+                alpha: material.alpha,
+                unlit: material.unlit,
+                labels: labels.clone(),
+                variants: variants(document, at, index)?,
+                stored,
+                centre_units: DVec3::ZERO,
+                world_from_local: Vec::new(),
+            };
+            match part.place(scene, &world) {
+                Ok(part) => parts.push(part),
+                // Programs hide things by a scale of zero.
+                Err(error) => {
+                    let place = error.field.as_deref().unwrap_or_default();
+                    notes.warn(format!("{}: {} ({place}); left without fur", at.path, error.what));
+                    flat.get_or_insert(error);
                 }
-                .place(scene, &world)?,
-            );
+            }
         }
     }
     if passed_over > 0 {
         notes.warn(format!("{passed_over} primitives of points or lines passed over"));
+    }
+    if let Some(error) = flat.filter(|_| parts.is_empty()) {
+        return Err(error);
     }
     if parts.is_empty() {
         return Err(Error::input("there is nothing that fur could grow on")
@@ -238,14 +286,31 @@ pub fn collect(document: &Document, scene: &SceneGraph, notes: &mut Notes) -> Re
     Ok((parts, (high - low).length()))
 }
 
-fn double_sided(document: &Document, material: usize) -> Result<bool> {
-    let at = document.root().entry("materials", material)?;
-    Ok(at.get("doubleSided").is_some_and(|sided| sided.value.as_bool() == Some(true)))
+/// The names of a mesh of one primitive, and of the nodes that show it.
+fn labels<'a>(mesh: &At<'_>, nodes: impl Iterator<Item = &'a At<'a>>) -> Result<Vec<String>> {
+    if mesh.list("primitives")?.len() > 1 {
+        return Ok(Vec::new());
+    }
+    let name = |at: &At<'_>| at.get("name").and_then(|name| name.value.as_str()).map(str::to_owned);
+    Ok(name(mesh).into_iter().chain(nodes.filter_map(name)).collect())
 }
 
-fn material_name(document: &Document, material: Option<usize>) -> Result<String> {
-    let Some(index) = material else { return Ok("default".into()) };
-    let at = document.root().entry("materials", index)?;
-    let name = at.get("name").and_then(|name| name.value.as_str()).filter(|name| !name.is_empty());
-    Ok(name.map_or_else(|| format!("material_{index}"), str::to_owned))
+/// Names of the variants (KHR_materials_variants) in which a primitive has another material than its own.
+fn variants(document: &Document, primitive: &At<'_>, own: Option<usize>) -> Result<Vec<String>> {
+    const NAME: &str = "KHR_materials_variants";
+    let member =
+        |owner: &At<'_>| owner.get("extensions").and_then(|extensions| extensions.get(NAME).map(|at| at.value.clone()));
+    let Some(mappings) = member(primitive) else { return Ok(Vec::new()) };
+    let all = member(&document.root()).unwrap_or_default();
+    let mut names = Vec::new();
+    for mapping in mappings["mappings"].as_array().into_iter().flatten() {
+        if mapping["material"].as_u64().map(|material| material as usize) == own {
+            continue;
+        }
+        for variant in mapping["variants"].as_array().into_iter().flatten().filter_map(serde_json::Value::as_u64) {
+            let name = all["variants"][variant as usize]["name"].as_str();
+            names.push(name.map_or_else(|| format!("variant {variant}"), str::to_owned));
+        }
+    }
+    Ok(names)
 }

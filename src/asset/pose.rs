@@ -37,7 +37,10 @@ impl Asset {
     /// # Errors
     /// Names weights that are not numbers.
     pub fn rest_pose(&self) -> Result<Pose> {
-        Ok(Pose { world: self.scene.world(&self.scene.local), weights: default_weights(&self.document)? })
+        Ok(Pose {
+            world: self.scene.world(&self.scene.local),
+            weights: self.with_instances(default_weights(&self.document)?),
+        })
     }
 
     /// The animation of this name, or of this number if no name fits.
@@ -81,7 +84,7 @@ impl Asset {
         let animation = self.document.root().entry("animations", index)?;
         for channel in animation.list("channels")? {
             let target = channel.need("target")?;
-            let Some(node) = target.reference("node", "nodes", local.len())? else { continue };
+            let Some(node) = target.reference("node", "nodes", self.scene.document_nodes)? else { continue };
             let sampler = animation.entry("samplers", channel.need("sampler")?.size()?)?;
             let path = target.need("path")?.text()?;
             let width = match path {
@@ -101,7 +104,14 @@ impl Asset {
                 _ => return Err(target.fault("a node without a matrix, because it is animated")),
             }
         }
-        Ok(Pose { world: self.scene.world(&local), weights })
+        Ok(Pose { world: self.scene.world(&local), weights: self.with_instances(weights) })
+    }
+
+    /// Weights of all nodes, given those of the document's: instances have their node's.
+    fn with_instances(&self, mut weights: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        let nodes = self.scene.document_nodes..self.scene.local.len();
+        weights.extend(nodes.map(|node| weights[self.scene.of_document(node)].clone()).collect::<Vec<_>>());
+        weights
     }
 }
 

@@ -2,8 +2,9 @@
 
 use super::document::Document;
 use super::json::At;
+use super::lod::Levels;
 use crate::error::{Error, Result};
-use crate::math::{DMat3, DMat4, DQuat, DVec3};
+use crate::math::{DMat3, DMat4, DQuat, DVec3, Vec3};
 
 /// A node's own transform.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +57,8 @@ pub(super) fn unit(q: DQuat) -> Option<DQuat> {
     (length.is_finite() && length > 1e-9).then(|| q / length)
 }
 
-/// Nodes in an order in which parents come first.
+/// Nodes in an order in which parents come first. Behind those of the document stand instances (EXT_mesh_gpu_instancing), each
+/// a child of the node that has it.
 #[derive(Clone, Debug, Default)]
 pub struct SceneGraph {
     /// Per node.
@@ -71,6 +73,12 @@ pub struct SceneGraph {
     pub skins: Vec<Skin>,
     /// Turns the file's axes to those of the world, y up and z forward; none where they are the same.
     pub upright: Option<DMat3>,
+    /// Nodes of the document.
+    pub document_nodes: usize,
+    /// Levels of detail.
+    pub levels: Levels,
+    /// Per node: whether KHR_node_visibility hides it, by itself or by a node above.
+    pub hidden: Vec<bool>,
 }
 
 /// Joints of a skin.
@@ -114,6 +122,16 @@ impl SceneGraph {
             Some(shown) => spread(shown.list("nodes")?.iter().map(At::size).collect::<Result<_>>()?),
             None => scene.order.clone(),
         };
+        scene.levels = Levels::of(&nodes, document, &scene.parent, &scene.order)?;
+        let invisible = |at: &At<'_>| {
+            let visible = at.get("extensions").and_then(|e| e.get("KHR_node_visibility")?.get("visible"));
+            visible.is_some_and(|visible| visible.value.as_bool() == Some(false))
+        };
+        scene.hidden = nodes.iter().map(invisible).collect();
+        for &node in &scene.order {
+            scene.hidden[node] |= scene.parent[node].is_some_and(|above| scene.hidden[above]);
+        }
+        scene.add_instances(document, &nodes)?;
         scene.shown.sort_unstable();
         scene.shown.dedup();
         for skin in root.list("skins")? {
@@ -125,6 +143,58 @@ impl SceneGraph {
     /// World coordinates of a place in the file's.
     pub fn world_from_file(&self, place: DVec3) -> DVec3 {
         self.upright.map_or(place, |turn| turn * place)
+    }
+
+    /// Adds what EXT_mesh_gpu_instancing places.
+    fn add_instances(&mut self, document: &Document, nodes: &[At<'_>]) -> Result<()> {
+        self.document_nodes = nodes.len();
+        for (node, at) in nodes.iter().enumerate() {
+            let Some(instancing) = at.get("extensions").and_then(|e| e.get("EXT_mesh_gpu_instancing")) else {
+                continue;
+            };
+            let attributes = instancing.need("attributes")?;
+            let read = |key: &str, width: usize| -> Result<Vec<f32>> {
+                let Some(at) = attributes.get(key) else { return Ok(Vec::new()) };
+                at.index_into("accessors", document.count("accessors"))?;
+                document.floats(at.size()?, width)
+            };
+            let (places, turns, scales) = (read("TRANSLATION", 3)?, read("ROTATION", 4)?, read("SCALE", 3)?);
+            let count = (places.len() / 3).max(turns.len() / 4).max(scales.len() / 3);
+            if [(&places, 3), (&turns, 4), (&scales, 3)]
+                .iter()
+                .any(|(list, n)| !list.is_empty() && list.len() != n * count)
+            {
+                return Err(attributes.fault("as many translations, rotations and scales"));
+            }
+            let triple = |list: &[f32], i: usize, default| {
+                list.get(3 * i..3 * i + 3).map_or(default, |t| Vec3::from_slice(t).as_dvec3())
+            };
+            for i in 0..count {
+                let turn =
+                    turns.get(4 * i..4 * i + 4).map(|q| DQuat::from_array([q[0], q[1], q[2], q[3]].map(f64::from)));
+                self.order.push(self.local.len());
+                self.local.push(Local::Trs {
+                    translation: triple(&places, i, DVec3::ZERO),
+                    rotation: turn.and_then(unit).unwrap_or(DQuat::IDENTITY),
+                    scale: triple(&scales, i, DVec3::ONE),
+                });
+                self.parent.push(Some(node));
+                self.hidden.push(self.hidden[node]);
+            }
+        }
+        Ok(())
+    }
+
+    /// What shows the mesh of a node: itself, or its instances.
+    pub fn placed(&self, node: usize) -> Vec<usize> {
+        let own = |&i: &usize| self.parent[i] == Some(node);
+        let instances: Vec<usize> = (self.document_nodes..self.local.len()).filter(own).collect();
+        if instances.is_empty() { vec![node] } else { instances }
+    }
+
+    /// The document's node that stands behind one of these.
+    pub fn of_document(&self, node: usize) -> usize {
+        if node < self.document_nodes { node } else { self.parent[node].unwrap_or_default() }
     }
 
     /// World matrix of every node, given every node's own.

@@ -1,38 +1,39 @@
-//! Which parts are furred: those asked for by material name, or all that are not by name something bare.
+//! Which parts are furred: those asked for by material name, or all that neither their names nor their materials say are bare.
 
+use super::material::Alpha;
 use super::part::Part;
+use super::words::bare_word;
 use crate::error::{Error, Result};
+use std::collections::{BTreeMap, HashMap};
 
-/// Words in a material's name that mean it has no fur.
-const BARE: [&str; 21] = [
-    "eye",
-    "eyes",
-    "nose",
-    "teeth",
-    "tooth",
-    "tongue",
-    "claw",
-    "claws",
-    "hoof",
-    "hooves",
-    "horn",
-    "horns",
-    "pad",
-    "pads",
-    "lash",
-    "lashes",
-    "eyelash",
-    "eyelashes",
-    "ground",
-    "floor",
-    "terrain",
-];
+/// A part is cards where at least this share of its edges are on a border: sheets of a few quads, as hair and whiskers are made of.
+const CARDS: f64 = 0.25;
 
-/// Indices of the parts to fur.
+/// What is furred, and why the rest is not.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Selection {
+    /// Indices of the parts to fur.
+    pub parts: Vec<usize>,
+    /// What was left out and by what it was told, where the choice was left to us.
+    pub note: Option<String>,
+}
+
+/// Why a part has no fur.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Bare {
+    /// By this word in a name.
+    Word(String),
+    /// Light shines through it.
+    Transparent,
+    /// It is made of cards that are cut out by alpha.
+    Cards,
+}
+
+/// Chooses the parts to fur.
 ///
 /// # Errors
 /// Lists the materials there are when a name is unknown, or when all of them are bare.
-pub fn select(parts: &[Part], names: &[String]) -> Result<Vec<usize>> {
+pub fn select(parts: &[Part], names: &[String]) -> Result<Selection> {
     let known = || {
         let mut known: Vec<&str> = parts.iter().map(|part| part.material_name.as_str()).collect();
         known.dedup();
@@ -44,31 +45,81 @@ pub fn select(parts: &[Part], names: &[String]) -> Result<Vec<usize>> {
             .with_found(unknown)
             .with_expected(known()));
     }
-    let wanted = |part: &Part| {
-        if names.is_empty() { !is_bare(&part.material_name) } else { names.contains(&part.material_name) }
-    };
-    let chosen: Vec<usize> = (0..parts.len()).filter(|&i| wanted(&parts[i])).collect();
+    if !names.is_empty() {
+        let named = (0..parts.len()).filter(|&i| names.contains(&parts[i].material_name)).collect();
+        return Ok(Selection { parts: named, note: None });
+    }
+    let by_material: Vec<Option<Bare>> =
+        parts.iter().map(|part| bare_word(&part.material_name).map(Bare::Word)).collect();
+    // Each further reason counts only where it leaves something.
+    let mut reasons = by_material;
+    for also in [by_mesh as fn(&Part) -> Option<Bare>, by_alpha] {
+        let more: Vec<Option<Bare>> =
+            parts.iter().zip(&reasons).map(|(part, reason)| reason.clone().or_else(|| also(part))).collect();
+        if more.iter().any(Option::is_none) {
+            reasons = more;
+        }
+    }
+    let chosen: Vec<usize> = (0..parts.len()).filter(|&i| reasons[i].is_none()).collect();
     if chosen.is_empty() {
         return Err(Error::usage("by their names, all materials are bare")
             .with_parameter("material")
             .with_expected(known())
             .with_hint("name the material to fur with `material`"));
     }
-    Ok(chosen)
+    Ok(Selection { note: note(parts, &chosen, &reasons), parts: chosen })
 }
 
-/// Whether a word of `name` is one of [`BARE`]; words end at anything but letters and before a capital.
-pub fn is_bare(name: &str) -> bool {
-    let mut words = vec![String::new()];
-    let mut lower_before = false;
-    for c in name.chars() {
-        if !c.is_alphabetic() || (c.is_uppercase() && lower_before) {
-            words.push(String::new());
-        }
-        if c.is_alphabetic() {
-            words.last_mut().expect("never empty").extend(c.to_lowercase());
-        }
-        lower_before = c.is_lowercase();
+/// By the name of its mesh or of a node that shows it, where all of the mesh has that name.
+fn by_mesh(part: &Part) -> Option<Bare> {
+    part.labels.iter().find_map(|label| bare_word(label)).map(Bare::Word)
+}
+
+fn by_alpha(part: &Part) -> Option<Bare> {
+    match part.alpha {
+        Alpha::Opaque => None,
+        Alpha::Blend => Some(Bare::Transparent),
+        Alpha::Mask => (share_of_border(part) >= CARDS).then_some(Bare::Cards),
     }
-    words.iter().any(|word| BARE.contains(&word.as_str()))
+}
+
+/// Share of its edges that only one triangle has.
+fn share_of_border(part: &Part) -> f64 {
+    let mut uses: HashMap<(u32, u32), u32> = HashMap::new();
+    for triangle in &part.stored.triangles {
+        let [a, b, c] = triangle.map(|v| part.stored.position_class[v as usize]);
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            *uses.entry((from.min(to), from.max(to))).or_default() += 1;
+        }
+    }
+    uses.values().filter(|&&count| count == 1).count() as f64 / uses.len().max(1) as f64
+}
+
+/// What was chosen and why.
+fn note(parts: &[Part], chosen: &[usize], reasons: &[Option<Bare>]) -> Option<String> {
+    let mut left: BTreeMap<&Bare, Vec<&str>> = BTreeMap::new();
+    for (part, reason) in parts.iter().zip(reasons) {
+        if let Some(reason) = reason {
+            let names = left.entry(reason).or_default();
+            let name = part.material_name.as_str();
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+    }
+    if left.is_empty() {
+        return None;
+    }
+    let mut furred: Vec<&str> = chosen.iter().map(|&i| parts[i].material_name.as_str()).collect();
+    furred.dedup();
+    let told = |(reason, names): (&&Bare, &Vec<&str>)| {
+        let why = match reason {
+            Bare::Word(word) => format!("by the name, {word:?}"),
+            Bare::Transparent => "as light shines through (alphaMode BLEND)".to_owned(),
+            Bare::Cards => "as cards cut out by alpha (alphaMode MASK)".to_owned(),
+        };
+        format!("{} {why}", names.join(", "))
+    };
+    let left: Vec<String> = left.iter().map(told).collect();
+    Some(format!("fur on {}; left out: {}; `material` chooses otherwise", furred.join(", "), left.join("; ")))
 }

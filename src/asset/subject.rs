@@ -24,7 +24,7 @@ impl Asset {
         for (index, part) in self.parts.iter().enumerate() {
             let mut used = vec![false; part.vertices()];
             part.stored.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
-            for &node in &part.nodes {
+            for &node in part.nodes.iter().filter(|&&node| !self.scene.hidden[node]) {
                 let points = part.posed(self, &pose, node, metres_per_unit).positions_m;
                 for (v, &p) in points.iter().enumerate().filter(|(v, p)| used[*v] && p.is_finite()) {
                     subject.points_m.push(p);

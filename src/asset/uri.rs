@@ -46,14 +46,16 @@ pub fn resolve<'a>(uri: &'a str, folder: Option<&Path>, field: &str) -> Result<T
     let Ok(path) = percent_encoding::percent_decode_str(uri).decode_utf8() else {
         return refuse("a URI is not UTF-8", "rename the file to plain letters");
     };
-    let plain = |name: &str| !matches!(name, "" | "." | "..") && !name.contains(['\\', ':', '\0']);
+    // Programs on Windows write their own separator.
+    let path = path.replace('\\', "/");
+    let plain = |name: &str| !matches!(name, "" | "." | "..") && !name.contains([':', '\0']);
     if !path.split('/').filter(|name| *name != ".").all(plain) {
         return refuse("a URI leaves the input's folder", "put the file beside the input and name it by its file name");
     }
     let Some(folder) = folder else {
         return refuse("a made-up mesh has no folder to read from", "use a file as input");
     };
-    let full = folder.join(path.as_ref());
+    let full = folder.join(&path);
     // A link may point out of the folder even where the name does not.
     if let (Ok(inside), Ok(real)) = (folder.canonicalize(), full.canonicalize())
         && !real.starts_with(&inside)
@@ -61,6 +63,54 @@ pub fn resolve<'a>(uri: &'a str, folder: Option<&Path>, field: &str) -> Result<T
         return refuse("a link leaves the input's folder", "copy the file it points to into the folder");
     }
     Ok(Target::File(full))
+}
+
+/// Finds a file that an older format names as its writer's disk had it: separators of either kind, letters in another case, a folder
+/// of another machine. Gives its path below `folder`, outside of which nothing is looked for.
+pub fn find(name: &str, folder: &Path) -> Option<String> {
+    let name = name.trim().trim_matches('"').replace('\\', "/");
+    let last = name.rsplit('/').next()?;
+    let inside =
+        |path: &String| matches!(resolve(&encode(path), Some(folder), ""), Ok(Target::File(full)) if full.is_file());
+    [name.as_str(), last].into_iter().filter_map(|name| in_any_case(name, folder)).find(inside)
+}
+
+/// A path as the disk has it, for one that may have its letters in another case.
+fn in_any_case(name: &str, folder: &Path) -> Option<String> {
+    let (mut at, mut found) = (folder.to_owned(), Vec::new());
+    if name.starts_with('/') {
+        return None;
+    }
+    for part in name.split('/').filter(|part| !matches!(*part, "" | ".")) {
+        if part == ".." {
+            return None;
+        }
+        let listed = || {
+            let names = std::fs::read_dir(&at).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+            names.filter(|other| other.to_lowercase() == part.to_lowercase()).min()
+        };
+        let real = if at.join(part).exists() { part.to_owned() } else { listed()? };
+        at.push(&real);
+        found.push(real);
+    }
+    (!found.is_empty()).then(|| found.join("/"))
+}
+
+/// What a URI may not hold as it is.
+const UNSAFE: &percent_encoding::AsciiSet = &percent_encoding::CONTROLS
+    .add(b' ')
+    .add(b'"')
+    .add(b'#')
+    .add(b'%')
+    .add(b'<')
+    .add(b'>')
+    .add(b'?')
+    .add(b'\\')
+    .add(b':');
+
+/// A path as a URI.
+pub fn encode(path: &str) -> String {
+    percent_encoding::utf8_percent_encode(path, UNSAFE).to_string()
 }
 
 /// The bytes of a base64 text.

@@ -14,7 +14,7 @@ pub mod units;
 mod wear;
 mod weld;
 
-use crate::asset::coat::{Fallback, refuse_second, write_coat};
+use crate::asset::coat::{Fallback, check_output, refuse_second, write_coat};
 use crate::asset::{self, Asset, Part, Reading};
 use crate::coat::axes::axes;
 use crate::coat::hair::{TileHair, leaning};
@@ -136,10 +136,13 @@ impl Steps<'_> {
 /// When the input cannot be used, names something that is not there, or the output cannot be written.
 pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Baked> {
     let mut steps = Steps { tell, steps: timing::Steps::default() };
+    check_output(&request.out, &[])?;
     let mut asset = steps.run("read", || asset::load_as(&request.input, &request.reading))?;
     refuse_second(&asset)?;
     refuse_own_input(&request.input, &request.out)?;
-    let chosen = asset::select(&asset.parts, &request.materials)?;
+    check_output(&request.out, &asset.document.files)?;
+    let selection = asset::select(&asset.parts, &request.materials)?;
+    let chosen = selection.parts;
     for (material, _) in &request.presets {
         if !asset.parts.iter().any(|part| &part.material_name == material) {
             return Err(Error::usage("a preset is for a material that the asset does not have")
@@ -149,8 +152,8 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
         }
     }
     let scale = units::scale(request.units, &request.preset, &asset, &chosen, request.input.starts_with("sample:"))?;
-    let mut notes: Vec<String> = scale.note.iter().cloned().collect();
-    let mut warnings = [&asset.warnings[..], &scale.warnings].concat();
+    let mut notes: Vec<String> = selection.note.into_iter().chain(scale.note.clone()).collect();
+    let mut warnings = [&asset.warnings[..], &unfollowed(&asset, &chosen), &scale.warnings].concat();
     let mut coat = Coat { metres_per_unit: scale.metres_per_unit, ..Coat::default() };
     let mut baked = Baked {
         coat: Coat::default(),
@@ -352,6 +355,19 @@ fn names<'a>(parts: impl Iterator<Item = &'a Part>) -> Vec<String> {
         }
     }
     names
+}
+
+/// What changes the colour of furred skin and not that of the fur on it: material variants.
+fn unfollowed(asset: &Asset, chosen: &[usize]) -> Vec<String> {
+    let of = |part: &Part| {
+        let names = part.variants.join(", ");
+        let name = &part.material_name;
+        format!("fur keeps the colour of material {name:?}; its skin has another in the material variants {names}")
+    };
+    let mut told: Vec<String> =
+        chosen.iter().map(|&i| &asset.parts[i]).filter(|part| !part.variants.is_empty()).map(of).collect();
+    told.dedup();
+    told
 }
 
 /// Fails before the work, not after it, when the output is the input.

@@ -2,7 +2,7 @@
 
 use super::skin::{self, Groomed, Role};
 use super::units::{self, Units};
-use super::weld;
+use super::{unfollowed, weld};
 use crate::asset::strands::Export;
 use crate::asset::{self, Asset, Pose, Reading};
 use crate::coat::hair::TileHair;
@@ -86,10 +86,13 @@ impl Grown {
     /// When the input cannot be used or names something that is not there.
     pub fn new(request: &PictureRequest) -> Result<Self> {
         let asset = asset::load_as(&request.input, &request.reading)?;
-        let chosen = asset::select(&asset.parts, &request.materials)?;
+        let selection = asset::select(&asset.parts, &request.materials)?;
+        let chosen = selection.parts;
         let preset = &request.preset;
         let scale = units::scale(request.units, preset, &asset, &chosen, request.input.starts_with("sample:"))?;
         let mut notes = asset.warnings.clone();
+        notes.extend(selection.note);
+        notes.extend(unfollowed(&asset, &chosen));
         notes.extend(scale.note.iter().chain(&scale.warnings).cloned());
         let pose = match &request.pose {
             Some((animation, seconds)) => {

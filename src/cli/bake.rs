@@ -20,9 +20,9 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 #[command(after_long_help = after_help())]
 pub struct Bake {
-    /// A .glb, .gltf or .obj file, or sample:NAME
+    /// A .glb, .gltf, .vrm or .obj file, or sample:NAME
     input: String,
-    /// The .glb or .gltf to write; never the input itself
+    /// The .glb, .gltf or .vrm to write; never the input itself
     #[arg(short, long, value_name = "OUT.glb")]
     output: PathBuf,
     /// A built-in preset or a TOML file, for every furred material or for the one named; repeatable. Default: fox
@@ -31,8 +31,8 @@ pub struct Bake {
     /// Change one value of every preset used; repeatable
     #[arg(long = "set", value_name = "TABLE.KEY=VALUE")]
     settings: Vec<String>,
-    /// Fur the material of this name; repeatable. Default: all but those named as eyes, nose, teeth, tongue, claws,
-    /// hooves, horns, pads, lashes or ground
+    /// Fur the material of this name; repeatable. Default: all but transparent ones, cards cut out by alpha, and those named as
+    /// eyes, nose, mouth, teeth, claws, hooves, horns, whiskers, glasses, ground and the like
     #[arg(long = "material", value_name = "NAME")]
     materials: Vec<String>,
     /// What one unit of the file is; auto takes what is furred to be as large as what the preset describes; where that is a small

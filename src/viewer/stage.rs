@@ -42,7 +42,7 @@ pub fn scene<'a>(asset: &'a Asset, coat: &'a Coat, textures: &'a Textures, pose:
             .iter()
             .filter(|coat_primitive| (coat_primitive.mesh, coat_primitive.primitive) == (part.mesh, part.primitive))
             .collect();
-        for &node in &part.nodes {
+        for &node in part.nodes.iter().filter(|&&node| !asset.scene.hidden[node]) {
             let posed = part.posed(asset, pose, node, coat.metres_per_unit);
             for coat_primitive in &carried {
                 scene.skins.push(furred_skin(part, &posed, coat_primitive, &coat.tiles[coat_primitive.tile], textures));

@@ -2,6 +2,8 @@
 
 use super::flatten;
 use super::parts::{part_of, set_extension};
+use super::place::place;
+use super::vrm::{self, Added};
 use crate::asset::accessor::AccessorLayout;
 use crate::asset::document::Document;
 use crate::asset::encode::Use;
@@ -14,7 +16,7 @@ use crate::data::coat::{Blend, Coat, CoatPrimitive, Cut, Sampled};
 use crate::error::Result;
 use crate::math::{Vec3, Vec4};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What viewers without the extension get to see.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,9 +32,10 @@ pub enum Fallback {
 /// All shells of a primitive share their vertex accessors and differ in their range of indices: viewers sort
 /// transparent meshes by the middle of their bounds, and so keep them in this order.
 pub fn add(document: &mut Document, asset: &Asset, coat: &Coat, count: u32) -> Result<()> {
-    let materials = materials(document, coat, count)?;
+    let mut added = Added { materials: document.count("materials"), ..Added::default() };
+    let materials = materials(document, asset, coat, count)?;
     let nearest: Vec<CoatPrimitive> = coat.primitives.iter().flat_map(|p| nearest(p, coat)).collect();
-    let meshes: std::collections::BTreeSet<usize> = nearest.iter().map(|p| p.mesh).collect();
+    let meshes: BTreeSet<usize> = nearest.iter().map(|p| p.mesh).collect();
     for mesh in meshes {
         let carried: Vec<&CoatPrimitive> = nearest.iter().filter(|p| p.mesh == mesh).collect();
         let mut stacks = Vec::new();
@@ -57,10 +60,14 @@ pub fn add(document: &mut Document, asset: &Asset, coat: &Coat, count: u32) -> R
         }
         set_extension(&mut shells, json!({"fallback": true}));
         let shells = document.push("meshes", shells);
-        for &node in &part_of(asset, carried[0])?.nodes {
-            place(document, node, shells, &name)?;
+        added.meshes.push((mesh, shells));
+        let nodes: BTreeSet<usize> =
+            part_of(asset, carried[0])?.nodes.iter().map(|&n| asset.scene.of_document(n)).collect();
+        for node in nodes {
+            added.nodes.push((node, place(document, &asset.scene, node, shells, &name)?));
         }
     }
+    vrm::follow(document, &added);
     Ok(())
 }
 
@@ -98,11 +105,16 @@ fn nearest_cut(coat_primitive: &CoatPrimitive, cut: &Cut, blend: &Blend, scale: 
 }
 
 /// Per tile, per shell: its height over the stack's, and a material with its texture.
-fn materials(document: &mut Document, coat: &Coat, count: u32) -> Result<Vec<Vec<(f32, usize)>>> {
+fn materials(document: &mut Document, asset: &Asset, coat: &Coat, count: u32) -> Result<Vec<Vec<(f32, usize)>>> {
     let sampler =
         document.push("samplers", json!({"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497}));
     let mut all = Vec::new();
-    for tile in &coat.tiles {
+    for (index, tile) in coat.tiles.iter().enumerate() {
+        // Over skin that light does not change, shells that it does would be of another colour.
+        let tiled = |p: &&CoatPrimitive| p.tile == index || p.blend.as_ref().is_some_and(|blend| blend.tile == index);
+        let worn: Vec<&Part> =
+            coat.primitives.iter().filter(tiled).map(|p| part_of(asset, p)).collect::<Result<_>>()?;
+        let unlit = !worn.is_empty() && worn.iter().all(|part| part.unlit);
         let mut of_tile = Vec::new();
         for (shell, (height, image)) in flatten::shells(&tile.shells, tile.height_m, count).iter().enumerate() {
             let view = document.push_view(&png(image)?, None);
@@ -111,15 +123,15 @@ fn materials(document: &mut Document, coat: &Coat, count: u32) -> Result<Vec<Vec
             let texture = document.push("textures", json!({"sampler": sampler, "source": image}));
             // Blended, not masked: a mask at one half erases sparse outer shells. Where limbs cross, the skin still
             // hides what is behind it; only fringes may be drawn in the wrong order.
-            let material = document.push(
-                "materials",
-                json!({
-                    "name": name,
-                    "alphaMode": "BLEND",
-                    "pbrMetallicRoughness": {"baseColorTexture": {"index": texture}, "metallicFactor": 0.0, "roughnessFactor": 1.0},
-                }),
-            );
-            of_tile.push((*height, material));
+            let mut material = json!({
+                "name": name,
+                "alphaMode": "BLEND",
+                "pbrMetallicRoughness": {"baseColorTexture": {"index": texture}, "metallicFactor": 0.0, "roughnessFactor": 1.0},
+            });
+            if unlit {
+                material["extensions"] = json!({"KHR_materials_unlit": {}});
+            }
+            of_tile.push((*height, document.push("materials", material)));
         }
         all.push(of_tile);
     }
@@ -263,58 +275,4 @@ fn copy_elements(to: &mut Document, from: &Document, at: &At<'_>, of: &[usize]) 
         to.json["accessors"][index]["normalized"] = json!(true);
     }
     Ok(index)
-}
-
-/// Shows the mesh `shells` wherever `node` shows its base: a child of it, or, under a skin (which overrides the node's
-/// own place), a root beside it.
-fn place(document: &mut Document, node: usize, shells: usize, name: &str) -> Result<()> {
-    let base = document.json["nodes"][node].clone();
-    let mut added = json!({"name": format!("{name} fur shells"), "mesh": shells});
-    for key in ["skin", "weights"] {
-        if let Some(value) = base.get(key) {
-            added[key] = value.clone();
-        }
-    }
-    let added_index = document.push("nodes", added);
-    if base.get("skin").is_some() {
-        for scene in scenes_with(document, node)? {
-            if let Some(list) = document.json["scenes"][scene]["nodes"].as_array_mut() {
-                list.push(json!(added_index));
-            }
-        }
-    } else if let Some(owner) = document.json["nodes"][node].as_object_mut()
-        && let Some(list) = owner.entry("children").or_insert_with(|| json!([])).as_array_mut()
-    {
-        list.push(json!(added_index));
-    }
-    // Weights are animated on the node, so the shells' node needs the same channels.
-    let animations = document.json.get_mut("animations").and_then(Value::as_array_mut);
-    for animation in animations.into_iter().flatten() {
-        let Some(channels) = animation["channels"].as_array_mut() else { continue };
-        let mut copies: Vec<Value> = channels.clone();
-        copies.retain(|c| c["target"]["node"].as_u64() == Some(node as u64) && c["target"]["path"] == "weights");
-        copies.iter_mut().for_each(|c| c["target"]["node"] = json!(added_index));
-        channels.extend(copies);
-    }
-    Ok(())
-}
-
-/// Scenes in whose trees `node` is.
-fn scenes_with(document: &Document, node: usize) -> Result<Vec<usize>> {
-    let root = document.root();
-    let nodes = root.list("nodes")?;
-    let mut found = Vec::new();
-    for (index, scene) in root.list("scenes")?.iter().enumerate() {
-        let mut reached: Vec<usize> = scene.list("nodes")?.iter().map(At::size).collect::<Result<_>>()?;
-        while let Some(here) = reached.pop() {
-            if here == node {
-                found.push(index);
-                break;
-            }
-            for child in nodes[here].list("children")? {
-                reached.push(child.size()?);
-            }
-        }
-    }
-    Ok(found)
 }

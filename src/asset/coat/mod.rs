@@ -4,6 +4,7 @@ mod fallback;
 mod flatten;
 mod input;
 mod parts;
+mod place;
 mod pool;
 mod ranges;
 mod read;
@@ -12,6 +13,7 @@ mod references;
 mod strip;
 mod textures;
 mod worn;
+mod vrm;
 mod write;
 
 pub use fallback::Fallback;
@@ -20,7 +22,7 @@ pub use input::Input;
 pub use read::{coat_of, read_coat, read_coat_as};
 pub use strip::{Stripped, bared, strip};
 pub use worn::{Worn, refuse_second};
-pub use write::{with_coat, write_coat, write_stripped};
+pub use write::{check_output, with_coat, write_coat, write_stripped};
 
 pub use super::extension::NAME;
 

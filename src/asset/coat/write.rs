@@ -11,21 +11,34 @@ use crate::asset::document::Document;
 use crate::asset::encode::{Use, numbers};
 use crate::asset::glb::is_glb;
 use crate::asset::image::media_type;
-use crate::asset::{Asset, write};
+use crate::asset::{Asset, uri, write};
 use crate::data::coat::{Coat, CoatPrimitive};
 use crate::data::texture::Texture;
 use crate::error::{Error, Kind, Result};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Writes the asset with its coat to `out`, a `.glb`, or a `.gltf` with a `.bin` beside it. Gives what the user should
+/// Checks, before any work is done, that `out` can be written: a glTF file, in a folder that exists, and none of `inputs`. Gives
+/// whether it is a text with a `.bin` beside it.
+///
+/// # Errors
+/// Says what it is instead.
+pub fn check_output(out: &Path, inputs: &[PathBuf]) -> Result<bool> {
+    let text = is_text(out)?;
+    write::check_target(out, inputs)?;
+    if text {
+        write::check_target(&out.with_extension("bin"), inputs)?;
+    }
+    Ok(text)
+}
+
+/// Writes the asset with its coat to `out`, a `.glb` or `.vrm`, or a `.gltf` with a `.bin` beside it. Gives what the user should
 /// know: images that were taken along, or that were not there, and whether the input can be given back.
 ///
 /// # Errors
 /// When the coat does not fit the asset, or the output cannot be written; then no output is left behind.
 pub fn write_coat(asset: &Asset, coat: &Coat, fallback: Fallback, out: &Path) -> Result<Vec<String>> {
-    let text = is_text(out)?;
-    write::check_target(out, &asset.document.files)?;
+    let text = check_output(out, &asset.document.files)?;
     let mut document = with_coat(asset, coat, fallback)?;
     let mut notes = bring_images(&mut document, out, text)?;
     notes.extend(input::store(&mut document)?);
@@ -39,9 +52,8 @@ pub fn write_coat(asset: &Asset, coat: &Coat, fallback: Fallback, out: &Path) ->
 /// # Errors
 /// When the output cannot be written.
 pub fn write_stripped(stripped: Stripped, out: &Path) -> Result<(bool, Vec<String>)> {
-    let text = is_text(out)?;
     let Stripped { mut document, input, mut notes, .. } = stripped;
-    write::check_target(out, &document.files)?;
+    let text = check_output(out, &document.files)?;
     let why = match input {
         Input::Whole(bytes) if is_glb(&bytes) != text => {
             write::whole(out, &bytes, &document.files)?;
@@ -62,12 +74,13 @@ pub fn write_stripped(stripped: Stripped, out: &Path) -> Result<(bool, Vec<Strin
 fn is_text(out: &Path) -> Result<bool> {
     let extension = out.extension().map(|e| e.to_string_lossy().to_lowercase());
     match extension.as_deref() {
-        Some("glb") => Ok(false),
+        // An avatar is a GLB with members of its own.
+        Some("glb" | "vrm") => Ok(false),
         Some("gltf") => Ok(true),
         _ => Err(Error::usage("the output must be glTF")
             .with_file(out)
             .with_found(extension.unwrap_or_else(|| "no extension".into()))
-            .with_expected(".glb or .gltf")),
+            .with_expected(".glb, .gltf or .vrm")),
     }
 }
 
@@ -86,22 +99,10 @@ fn write_document(mut document: Document, out: &Path, text: bool) -> Result<()> 
     }
     let binary = out.with_extension("bin");
     let name = binary.file_name().unwrap_or_default().to_string_lossy();
-    document.json["buffers"][0]["uri"] = json!(percent_encoding::utf8_percent_encode(&name, UNSAFE).to_string());
+    document.json["buffers"][0]["uri"] = json!(uri::encode(&name));
     let json = to_text(&document.json)?;
     write::all(&[(binary, &document.binary), (out.to_owned(), &json)], &document.files)
 }
-
-/// What a URI may not hold as it is.
-const UNSAFE: &percent_encoding::AsciiSet = &percent_encoding::CONTROLS
-    .add(b' ')
-    .add(b'"')
-    .add(b'#')
-    .add(b'%')
-    .add(b'<')
-    .add(b'>')
-    .add(b'?')
-    .add(b'\\')
-    .add(b':');
 
 fn to_text(json: &Value) -> Result<Vec<u8>> {
     serde_json::to_vec(json).map_err(|error| Error::new(Kind::Output, format!("the JSON cannot be written: {error}")))
@@ -119,9 +120,17 @@ fn take_images_along(document: &mut Document) -> Result<Vec<String>> {
     for index in 0..document.count("images") {
         let uri = document.json["images"][index]["uri"].as_str().map(str::to_owned);
         let Some(uri) = uri.filter(|uri| !uri.starts_with("data:")) else { continue };
-        let Some(bytes) = document.image_bytes(index)? else {
-            notes.push(format!("images[{index}] ({uri}) is not there; the output still names it"));
-            continue;
+        let bytes = match document.image_bytes(index) {
+            Ok(Some(bytes)) => bytes,
+            Ok(None) => {
+                notes.push(format!("images[{index}] ({uri}) is not there; the output still names it"));
+                continue;
+            }
+            Err(error) => {
+                notes
+                    .push(format!("images[{index}] ({uri}) cannot be read: {}; the output still names it", error.what));
+                continue;
+            }
         };
         let Some(media) = media_type(&bytes) else {
             notes.push(format!("images[{index}] ({uri}) is of an unknown kind; the output still names it"));

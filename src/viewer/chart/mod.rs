@@ -56,7 +56,12 @@ pub struct Drawing<'a> {
 pub fn draw<'a>(asset: &'a Asset, coat: &'a Coat, pose: &Pose, chart: Chart, tile: &'a Image8) -> Result<Drawing<'a>> {
     let mut posed = Vec::new();
     for part in &asset.parts {
-        posed.extend(part.nodes.iter().map(|&node| (part, part.posed(asset, pose, node, coat.metres_per_unit))));
+        posed.extend(
+            part.nodes
+                .iter()
+                .filter(|&&node| !asset.scene.hidden[node])
+                .map(|&node| (part, part.posed(asset, pose, node, coat.metres_per_unit))),
+        );
     }
     let mut skins = Vec::new();
     let mut all = Vec::new();

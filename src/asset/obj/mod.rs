@@ -3,12 +3,20 @@
 //! A reader of our own because files in the wild have relative indices, continued lines, concave polygons and numbers
 //! that are none, and each fault should be named by its line.
 
+mod fill;
+mod lines;
+mod mtl;
+
 use super::document::Document;
 use super::encode::Use;
-use super::uri;
+use super::text;
+use crate::data::image::linear_from_srgb;
 use crate::error::{Error, Result};
-use crate::math::{DVec3, Vec2, Vec3};
+use crate::math::{Vec2, Vec3};
+use fill::fill;
+use mtl::Materials;
 use serde_json::json;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -16,7 +24,7 @@ use std::path::Path;
 type Corner = (u32, Option<u32>, Option<u32>);
 
 /// Faces of one material.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Group {
     material: String,
     vertices: Vec<Corner>,
@@ -29,6 +37,10 @@ struct Reader {
     positions: Vec<Vec3>,
     uvs: Vec<Vec2>,
     normals: Vec<Vec3>,
+    /// Colours that stand behind positions, per position, as written.
+    colours: HashMap<u32, Vec3>,
+    /// Points and lines.
+    passed_over: usize,
     groups: Vec<Group>,
     current: String,
     libraries: Vec<String>,
@@ -39,21 +51,12 @@ struct Reader {
 /// # Errors
 /// Names the line that cannot be read.
 pub fn read(bytes: &[u8], path: &Path, warnings: &mut Vec<String>) -> Result<Document> {
-    let text = String::from_utf8_lossy(bytes);
-    let mut reader = Reader { current: "default".into(), ..Reader::default() };
-    let mut lines = text.lines().enumerate();
-    while let Some((number, line)) = lines.next() {
-        let mut line = line.to_owned();
-        while line.trim_end().ends_with('\\') {
-            line.truncate(line.trim_end().len() - 1);
-            match lines.next() {
-                Some((_, more)) => line.push_str(more),
-                None => break,
-            }
-        }
-        let line = line.split('#').next().unwrap_or_default();
-        reader.line(line).map_err(|error| Error { field: Some(format!("line {}", number + 1)), ..error })?;
+    let (text, odd) = text::decode(bytes);
+    if !odd.is_empty() {
+        warnings.push(format!("{} bytes are not UTF-8; read as Latin-1", odd.len()));
     }
+    let mut reader = Reader { current: "default".into(), ..Reader::default() };
+    lines::each(&text, |keyword, rest| reader.line(keyword, rest))?;
     if reader.groups.is_empty() {
         return Err(Error::input("the OBJ has no faces")
             .with_field("f")
@@ -65,11 +68,19 @@ pub fn read(bytes: &[u8], path: &Path, warnings: &mut Vec<String>) -> Result<Doc
 }
 
 impl Reader {
-    fn line(&mut self, line: &str) -> Result<()> {
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("v") => self.positions.push(Vec3::from_array(numbers(words)?)),
-            Some("vt") => {
+    fn line(&mut self, keyword: &str, rest: &str) -> Result<()> {
+        let words = rest.split_whitespace();
+        match keyword {
+            "v" => {
+                // As scanners write it: x y z, then red, green and blue.
+                if words.clone().count() >= 6
+                    && let Ok(colour) = numbers(words.clone().skip(3))
+                {
+                    self.colours.insert(self.positions.len() as u32, Vec3::from_array(colour));
+                }
+                self.positions.push(Vec3::from_array(numbers(words)?));
+            }
+            "vt" => {
                 let [u, v] = match words.clone().count() {
                     1 => [numbers::<1>(words)?[0], 0.0],
                     _ => numbers(words)?,
@@ -77,10 +88,11 @@ impl Reader {
                 // OBJ counts v from below, glTF from above.
                 self.uvs.push(Vec2::new(u, 1.0 - v));
             }
-            Some("vn") => self.normals.push(Vec3::from_array(numbers(words)?)),
-            Some("f") => self.face(words)?,
-            Some("usemtl") => self.current = line.trim_start()["usemtl".len()..].trim().to_owned(),
-            Some("mtllib") => self.libraries.push(line.trim_start()["mtllib".len()..].trim().to_owned()),
+            "vn" => self.normals.push(Vec3::from_array(numbers(words)?)),
+            "f" => self.face(words)?,
+            "p" | "l" => self.passed_over += 1,
+            "usemtl" => self.current = rest.to_owned(),
+            "mtllib" => self.libraries.push(rest.to_owned()),
             _ => {}
         }
         Ok(())
@@ -103,15 +115,7 @@ impl Reader {
             }
         };
         let group = &mut self.groups[at];
-        let mapped: Vec<u32> = corners
-            .into_iter()
-            .map(|corner| {
-                *group.known.entry(corner).or_insert_with(|| {
-                    group.vertices.push(corner);
-                    group.vertices.len() as u32 - 1
-                })
-            })
-            .collect();
+        let mapped: Vec<u32> = corners.into_iter().map(|corner| group.index_of(corner)).collect();
         group.indices.extend(fill(&points).into_iter().map(|i| mapped[i]));
         Ok(())
     }
@@ -147,9 +151,15 @@ impl Reader {
         let mut document = Document::made(&name);
         document.folder = path.parent().map(|p| if p.as_os_str().is_empty() { ".".into() } else { p.to_owned() });
         document.files.push(path.to_owned());
-        let textures = self.textures(&mut document, warnings);
+        if self.passed_over > 0 {
+            warnings.push(format!("{} lines of points or curves passed over", self.passed_over));
+        }
+        let materials = mtl::read(&self.libraries, &mut document, warnings);
+        // Colours of 8 bits are told by their size.
+        let top = self.colours.values().fold(1.0_f32, |top, colour| top.max(colour.max_element()));
         let mut primitives = Vec::new();
         for group in &self.groups {
+            let group = group.with_uvs(warnings);
             let positions: Vec<Vec3> = group.vertices.iter().map(|c| self.positions[c.0 as usize]).collect();
             let mut attributes = json!({"POSITION": document.push_positions(&positions, Use::Vertices)});
             let normals: Option<Vec<Vec3>> =
@@ -158,15 +168,26 @@ impl Reader {
                 attributes["NORMAL"] = json!(document.push_vec3(&normals, Use::Vertices));
             }
             let uvs: Option<Vec<Vec2>> = group.vertices.iter().map(|c| Some(self.uvs[c.1? as usize])).collect();
+            let has_uvs = uvs.is_some();
             if let Some(uvs) = uvs {
                 attributes["TEXCOORD_0"] = json!(document.push_vec2(&uvs, Use::Vertices));
             }
-            let mut pbr = json!({"metallicFactor": 0.0, "roughnessFactor": 0.9});
-            if let Some(image) = textures.get(&group.material) {
-                let texture = document.push("textures", json!({"source": image}));
-                pbr["baseColorTexture"] = json!({"index": texture});
+            let described = self.material(&group.material, &materials, has_uvs, warnings);
+            if group.vertices.iter().any(|c| self.colours.contains_key(&c.0)) {
+                if described.is_textured() {
+                    let name = &group.material;
+                    warnings.push(format!(
+                        "material {name:?} has a texture; colours that stand behind its vertices are left out"
+                    ));
+                } else {
+                    let linear = |c: f32| linear_from_srgb((c / if top > 1.0 { 255.0 } else { 1.0 }).clamp(0.0, 1.0));
+                    let colour = |c: &Corner| self.colours.get(&c.0).map_or(Vec3::ONE, |colour| colour.map(linear));
+                    let colours: Vec<Vec3> = group.vertices.iter().map(colour).collect();
+                    attributes["COLOR_0"] = json!(document.push_vec3(&colours, Use::Vertices));
+                }
             }
-            let material = document.push("materials", json!({"name": group.material, "pbrMetallicRoughness": pbr}));
+            let described = described.to_gltf(&group.material, &mut document);
+            let material = document.push("materials", described);
             let indices = document.push_integers(&group.indices, 1, Use::Indices);
             primitives.push(json!({"attributes": attributes, "indices": indices, "material": material}));
         }
@@ -178,43 +199,59 @@ impl Reader {
         Ok(document)
     }
 
-    /// Images named by `map_Kd` in the material files, by material.
-    fn textures(&self, document: &mut Document, warnings: &mut Vec<String>) -> HashMap<String, usize> {
-        let mut found = HashMap::new();
-        for library in &self.libraries {
-            let text = match uri::resolve(library, document.folder.as_deref(), "mtllib") {
-                Ok(uri::Target::File(path)) => uri::read_file(&path).map(|bytes| {
-                    document.files.push(path);
-                    String::from_utf8_lossy(&bytes).into_owned()
-                }),
-                _ => Err(Error::input("it lies outside the input's folder")),
-            };
-            let text = match text {
-                Ok(text) => text,
-                Err(error) => {
-                    warnings.push(format!("material file {library} passed over: {}", error.what));
-                    continue;
-                }
-            };
-            let mut material = String::new();
-            for line in text.lines().map(str::trim) {
-                if let Some(name) = line.strip_prefix("newmtl ") {
-                    material = name.trim().to_owned();
-                } else if let Some(file) = line.strip_prefix("map_Kd ") {
-                    // Options such as -s 1 1 1 come before the name; names with spaces are then cut, and warned about.
-                    let file = file.trim();
-                    let file = if file.starts_with('-') { file.rsplit(' ').next().unwrap_or(file) } else { file };
-                    match uri::resolve(file, document.folder.as_deref(), "map_Kd") {
-                        Ok(_) => {
-                            let image = document.push("images", json!({"uri": file}));
-                            found.insert(std::mem::take(&mut material), image);
-                        }
-                        Err(error) => warnings.push(format!("texture {file} passed over: {}", error.what)),
-                    }
-                }
-            }
+    /// What is known of a material; what cannot be used of it is said.
+    fn material(&self, name: &str, materials: &Materials, has_uvs: bool, warnings: &mut Vec<String>) -> mtl::Material {
+        let found = materials.get(name);
+        if found.is_none() && !materials.is_empty() && name != "default" {
+            warnings.push(format!("material {name:?} is in none of the material files; taken as white"));
+        }
+        let found = found.cloned().unwrap_or_default();
+        if found.is_textured() && !has_uvs {
+            warnings.push(format!(
+                "material {name:?} has a texture, but its faces have no texture coordinates; its Kd is used alone"
+            ));
+            return found.without_texture();
         }
         found
+    }
+}
+
+impl Group {
+    /// The same with texture coordinates at every corner, where some have them and others not: a face that lacks them takes one
+    /// of its own, or one that is known at a place of it, or the group's first, so that it shows one colour of its surroundings.
+    fn with_uvs(&self, warnings: &mut Vec<String>) -> Cow<'_, Self> {
+        let Some(first) = self.vertices.iter().find_map(|c| c.1) else { return Cow::Borrowed(self) };
+        let lacking = self.vertices.iter().filter(|c| c.1.is_none()).count();
+        if lacking == 0 {
+            return Cow::Borrowed(self);
+        }
+        warnings.push(format!(
+            "material {:?}: {lacking} of {} vertices have no texture coordinate; their faces take the colour beside them",
+            self.material,
+            self.vertices.len()
+        ));
+        let mut at: HashMap<u32, u32> = HashMap::new();
+        self.vertices.iter().filter_map(|c| Some((c.0, c.1?))).for_each(|(p, uv)| {
+            at.entry(p).or_insert(uv);
+        });
+        let mut whole = Self { material: self.material.clone(), ..Self::default() };
+        for triangle in self.indices.as_chunks::<3>().0 {
+            let corners = triangle.map(|v| self.vertices[v as usize]);
+            let own = corners.iter().find_map(|c| c.1).or_else(|| corners.iter().find_map(|c| at.get(&c.0).copied()));
+            for (p, uv, n) in corners {
+                let index = whole.index_of((p, uv.or(own).or(Some(first)), n));
+                whole.indices.push(index);
+            }
+        }
+        Cow::Owned(whole)
+    }
+
+    /// The number of a corner among its vertices.
+    fn index_of(&mut self, corner: Corner) -> u32 {
+        *self.known.entry(corner).or_insert_with(|| {
+            self.vertices.push(corner);
+            self.vertices.len() as u32 - 1
+        })
     }
 }
 
@@ -231,26 +268,4 @@ fn numbers<'a, const N: usize>(mut words: impl Iterator<Item = &'a str>) -> Resu
         })?;
     }
     Ok(list)
-}
-
-/// Triangles that fill a polygon, as corner indices: by ears in the plane of its area, which concave ones need.
-fn fill(points: &[Vec3]) -> Vec<usize> {
-    let n = points.len();
-    let wide: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
-    let normal: DVec3 = (0..n).map(|i| (wide[i] - wide[0]).cross(wide[(i + 1) % n] - wide[0])).sum();
-    let Some(normal) = normal.try_normalize().filter(|_| n > 3) else {
-        return (1..n - 1).flat_map(|i| [0, i, i + 1]).collect();
-    };
-    let (x, y) = normal.any_orthonormal_pair();
-    let flat: Vec<[f64; 2]> = wide.iter().map(|p| [(*p - wide[0]).dot(x), (*p - wide[0]).dot(y)]).collect();
-    let mut indices: Vec<usize> = Vec::new();
-    earcut::Earcut::new().earcut(flat.iter().copied(), &[], &mut indices);
-    // Earcut leaves the orientation of its triangles open; all must wind as the polygon does.
-    for t in indices.chunks_exact_mut(3) {
-        let [a, b, c] = [wide[t[0]], wide[t[1]], wide[t[2]]];
-        if (b - a).cross(c - a).dot(normal) < 0.0 {
-            t.swap(1, 2);
-        }
-    }
-    indices
 }
