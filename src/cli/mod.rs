@@ -10,6 +10,7 @@ mod inspect;
 mod output;
 mod presets;
 mod progress;
+mod recipe;
 mod render;
 mod report;
 mod stage;

@@ -1,6 +1,6 @@
 //! `furrier render`.
 
-use super::bake::UnitName;
+use super::recipe::UnitName;
 use super::console::Console;
 use super::output;
 use super::stage::StageArgs;
