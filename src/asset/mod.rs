@@ -7,6 +7,7 @@ pub mod document;
 mod encode;
 mod extension;
 mod glb;
+pub mod glimpse;
 pub mod image;
 mod json;
 pub mod ktx2;
