@@ -88,6 +88,11 @@ impl Console {
         let _ = write!(io::stderr(), "{text}");
     }
 
+    /// Whether nothing but results and errors is printed.
+    pub fn quiet(&self) -> bool {
+        self.quiet
+    }
+
     /// Whether results are asked for as JSON.
     pub fn json(&self) -> bool {
         self.json
