@@ -6,17 +6,23 @@
 //! to the byte; they are whole or absent, and a run that was killed goes on where it was.
 
 pub mod content;
+pub mod emit;
 pub mod estimate;
 pub mod event;
+pub mod fragments;
 mod item;
 pub mod journal;
+pub mod junit;
 pub mod key;
 pub mod library;
 pub mod outcome;
+pub mod page;
 pub mod plan;
+pub mod range;
 pub mod record;
+pub mod results;
 pub mod run;
-mod schedule;
+pub mod schedule;
 pub mod standing;
 
 /// Raised whenever a bake gives other bytes from the same input, so that no output of an earlier program is taken for current.

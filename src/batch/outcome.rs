@@ -33,9 +33,7 @@ impl From<&Error> for Fault {
         let place = error.field.as_deref().or(error.parameter);
         let parts = [("at", place), ("found", error.found.as_deref()), ("expected", error.expected.as_deref())];
         let mut reason = error.what.clone();
-        for (i, (label, text)) in
-            parts.into_iter().filter_map(|(label, text)| Some((label, text?))).enumerate()
-        {
+        for (i, (label, text)) in parts.into_iter().filter_map(|(label, text)| Some((label, text?))).enumerate() {
             reason.push_str(if i == 0 { ": " } else { ", " });
             reason.push_str(&format!("{label} {}", text.split_whitespace().collect::<Vec<_>>().join(" ")));
         }

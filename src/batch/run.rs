@@ -56,10 +56,15 @@ pub fn run(plan: &Plan, entries: &[Entry], limits: &Limits, listen: &mut Listen<
     let (journal, found) = Journal::open(&plan.state())?;
     plan.records().create()?;
     for output in &found.unfinished {
-        listen(Event::Note(&format!("the last run was stopped while it baked {}; it goes on from there", output.display())));
+        listen(Event::Note(&format!(
+            "the last run was stopped while it baked {}; it goes on from there",
+            output.display()
+        )));
     }
     if found.others > 0 {
-        listen(Event::Note("another run is at work on this library; what both bake is baked twice, with the same result"));
+        listen(Event::Note(
+            "another run is at work on this library; what both bake is baked twice, with the same result",
+        ));
     }
     let Looked { keys, standings } = look(plan, entries, limits.threads)?;
     let mut outcomes: Vec<Outcome> = Vec::with_capacity(entries.len());

@@ -1,9 +1,11 @@
 //! The flags that say how a coat is baked, whatever it is baked on.
 
 use crate::asset::coat::Fallback;
-use crate::bake::recipe::{Choices, Layout};
+use crate::bake::recipe::{Choices, Layout, split_choice};
 use crate::bake::units::Units;
+use crate::preset::Preset;
 use clap::{Args, ValueEnum};
+use std::path::PathBuf;
 
 /// What decides a coat beside its input.
 #[derive(Clone, Debug, Args)]
@@ -45,6 +47,12 @@ pub struct RecipeArgs {
 }
 
 impl RecipeArgs {
+    /// The files among the presets.
+    pub fn preset_files(&self) -> Vec<PathBuf> {
+        let names = self.presets.iter().map(|choice| split_choice(choice).1);
+        names.filter(|name| Preset::source(name).is_none()).map(PathBuf::from).collect()
+    }
+
     /// What was chosen.
     pub fn choices(&self) -> Choices {
         Choices {

@@ -1,8 +1,8 @@
 //! `furrier render`.
 
-use super::recipe::UnitName;
 use super::console::Console;
 use super::output;
+use super::recipe::UnitName;
 use super::stage::StageArgs;
 use crate::asset::strands;
 use crate::bake::picture::{Grown, Only, PictureRequest};

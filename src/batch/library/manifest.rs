@@ -76,7 +76,8 @@ impl Manifest {
                 .with_found(found)
                 .with_hint("`furrier batch init` writes one with comments; docs/batch.md lists the keys")
         };
-        let about = std::fs::metadata(path).map_err(|e| Error::input(format!("cannot read the file: {e}")).with_file(path))?;
+        let about =
+            std::fs::metadata(path).map_err(|e| Error::input(format!("cannot read the file: {e}")).with_file(path))?;
         if about.len() > LARGEST_FILE {
             return Err(fault(format!("{} bytes", about.len())).with_expected(format!("at most {LARGEST_FILE} bytes")));
         }
@@ -84,10 +85,14 @@ impl Manifest {
         let mut manifest: Self = toml::from_str(&text).map_err(|e| fault(e.to_string().trim_end().to_owned()))?;
         manifest.path = path.to_owned();
         if !manifest.defaults.files.is_empty() || !manifest.defaults.except.is_empty() {
-            return Err(fault("files in [defaults]".into()).with_expected("globs in [[rules]]; the defaults are for all"));
+            return Err(
+                fault("files in [defaults]".into()).with_expected("globs in [[rules]]; the defaults are for all")
+            );
         }
         if let Some(i) = manifest.rules.iter().position(|rule| rule.files.is_empty()) {
-            return Err(fault(format!("rules[{i}] without files")).with_expected("files = [\"**/*.glb\"] or other globs"));
+            return Err(
+                fault(format!("rules[{i}] without files")).with_expected("files = [\"**/*.glb\"] or other globs")
+            );
         }
         Ok(manifest)
     }
@@ -102,7 +107,8 @@ impl Manifest {
         let patterns = std::iter::once(&self.defaults).chain(&self.rules).filter_map(|rule| rule.output.as_deref());
         let folders = patterns.chain([OUTPUT]).map(|text| Ok(Pattern::new(text)?.folder().to_owned()));
         let folders = folders.collect::<Result<Vec<PathBuf>>>().map_err(|error| error.with_file(&self.path))?;
-        let aside: Vec<PathBuf> = folders.iter().filter(|f| !f.as_os_str().is_empty()).map(|f| root.join(f).components().collect()).collect();
+        let aside: Vec<PathBuf> =
+            folders.iter().filter(|f| !f.as_os_str().is_empty()).map(|f| root.join(f).components().collect()).collect();
         // Few sets of rules serve many files.
         let mut known: HashMap<Vec<bool>, Option<(usize, Pattern)>> = HashMap::new();
         let mut wanted = Vec::new();
@@ -158,9 +164,9 @@ impl Manifest {
     fn choices(&self, rule: Rule) -> Result<Choices> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let default = Choices::default();
-        let fallback = rule.fallback.map(|text| text.parse::<Fallback>().map_err(|reason| {
-            Error::usage(reason).with_field("fallback").with_found(text)
-        }));
+        let fallback = rule.fallback.map(|text| {
+            text.parse::<Fallback>().map_err(|reason| Error::usage(reason).with_field("fallback").with_found(text))
+        });
         Ok(Choices {
             presets: rule.presets.unwrap_or_default().iter().map(|choice| beside(choice, folder)).collect(),
             settings: rule.set,

@@ -23,7 +23,12 @@ impl Init {
     pub fn run(self, console: &Console) -> Result<()> {
         let path = starter::write(&self.folder)?;
         console.result(&json!({ "written": path }), |out| {
-            writeln!(out, "{}: change what is baked how in it, then `furrier batch {}`", path.display(), self.folder.display())
+            writeln!(
+                out,
+                "{}: change what is baked how in it, then `furrier batch {}`",
+                path.display(),
+                self.folder.display()
+            )
         })
     }
 }

@@ -1,22 +1,31 @@
 //! `furrier batch`.
 
+mod emit;
+mod ending;
 mod init;
 mod limits;
+mod look;
+mod merge;
+mod plan;
 mod progress;
 mod table;
+mod told;
+mod watch;
+mod work;
 
 use super::console::Console;
 use super::recipe::RecipeArgs;
 use crate::batch::outcome::{Outcome, Totals};
 use crate::batch::plan::Plan;
 use crate::batch::{library, run};
-use crate::error::{Error, Kind, Result};
+use crate::error::Result;
 use clap::{Args, Subcommand};
+use ending::EndingArgs;
 use limits::LimitArgs;
-use progress::Progress;
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
+use told::Told;
 
 /// Bake a library of assets: what is out of date, several at once
 #[derive(Debug, Args)]
@@ -46,8 +55,16 @@ pub struct Batch {
     #[arg(long)]
     fail_fast: bool,
     /// Say what would be done, and why, and do nothing
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["watch", "jsonl"])]
     dry_run: bool,
+    /// Bake again whatever changes on disk, until Ctrl-C
+    #[arg(long)]
+    watch: bool,
+    /// Print a line of JSON per event on stdout instead of a table
+    #[arg(long)]
+    jsonl: bool,
+    #[command(flatten)]
+    ending: EndingArgs,
 }
 
 /// What is baked, how and where to.
@@ -66,31 +83,42 @@ pub struct LibraryArgs {
 #[derive(Debug, Subcommand)]
 enum What {
     Init(init::Init),
+    Plan(plan::PlanCommand),
+    Run(work::RunCommand),
+    Merge(merge::Merge),
+    Emit(emit::Emit),
 }
 
 impl Batch {
     /// Bakes what is out of date and says what came of it.
     ///
     /// # Errors
-    /// Where the library cannot be used; [`Kind::Some`] where assets failed.
+    /// Where the library cannot be used; as [`EndingArgs::end`].
     pub fn run(self, console: &Console) -> Result<()> {
         match self.what {
             Some(What::Init(init)) => return init.run(console),
+            Some(What::Plan(plan)) => return plan.run(console),
+            Some(What::Run(run)) => return run.run(console),
+            Some(What::Merge(merge)) => return merge.run(console),
+            Some(What::Emit(emit)) => return emit.run(console),
             None => {}
         }
-        let plan = self.library.plan()?;
+        self.ending.check()?;
         let limits = self.limits.limits(self.fail_fast);
         if self.dry_run {
-            return dry_run(&plan, limits.threads, console);
+            return dry_run(&self.library.plan()?, limits.threads, console);
         }
-        let started = Instant::now();
-        let mut progress = Progress::new(console);
-        let outcomes = run::run(&plan, &plan.entries, &limits, &mut |event| progress.hear(event))?;
-        drop(progress);
-        let totals = Totals::of(&outcomes);
-        let seconds = started.elapsed().as_secs_f64();
-        console.result(&summary(&outcomes), |out| table::print(&outcomes, totals, seconds, out))?;
-        verdict(&outcomes)
+        let bake = |plan: &Plan| {
+            let started = Instant::now();
+            let mut told = if self.jsonl { Told::events(console)? } else { Told::people(console) };
+            let outcomes = run::run(plan, &plan.entries, &limits, &mut |event| told.hear(event))?;
+            let told = !told.finish()?;
+            self.ending.end(plan, outcomes, Some(started.elapsed().as_secs_f64()), told, console)
+        };
+        if self.watch {
+            return watch::watch(&self.library, console, &bake);
+        }
+        bake(&self.library.plan()?)
     }
 }
 
@@ -103,6 +131,12 @@ impl LibraryArgs {
         let choices = self.recipe.choices();
         let chosen = choices != crate::bake::recipe::Choices::default();
         library::open(&self.library, &choices, self.output.as_deref(), chosen)
+    }
+
+    /// Folders with what is baked, and with the files of presets.
+    fn folders(&self) -> Vec<PathBuf> {
+        let folder = |path: &PathBuf| if path.is_dir() { path.clone() } else { beside(path) };
+        self.library.iter().map(folder).chain(self.recipe.preset_files().iter().map(beside)).collect()
     }
 }
 
@@ -124,16 +158,9 @@ fn summary(outcomes: &[Outcome]) -> serde_json::Value {
     })
 }
 
-/// Fails where an asset did.
-fn verdict(outcomes: &[Outcome]) -> Result<()> {
-    let totals = Totals::of(outcomes);
-    if totals.failed == 0 && totals.not_run == 0 {
-        return Ok(());
-    }
-    let left = if totals.not_run > 0 { format!(", {} not run", totals.not_run) } else { String::new() };
-    Err(Error::new(Kind::Some, "some assets failed")
-        .with_found(format!("{} of {} failed{left}", totals.failed, outcomes.len()))
-        .with_hint("the others are up to date; the table says why each failed, and `furrier bake` on one says more"))
+/// The folder that a file lies in.
+fn beside(path: &PathBuf) -> PathBuf {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned()
 }
 
 /// Says what would be done.

@@ -8,10 +8,11 @@ const SLOWEST: usize = 5;
 /// How many warnings are shown.
 const WARNINGS: usize = 20;
 
-/// Prints what came of a run that took so many seconds.
-pub fn print(outcomes: &[Outcome], totals: Totals, seconds: f64, out: &mut dyn Write) -> Result<()> {
+/// Prints what came of a run; `seconds` are those of one process, where it was one.
+pub fn print(outcomes: &[Outcome], totals: Totals, seconds: Option<f64>, out: &mut dyn Write) -> Result<()> {
     let Totals { baked, up_to_date, failed, not_run, warnings } = totals;
-    writeln!(out, "{:<12} {baked:>6}   in {seconds:.1} s", "baked")?;
+    let seconds = seconds.map(|seconds| format!("   in {seconds:.1} s")).unwrap_or_default();
+    writeln!(out, "{:<12} {baked:>6}{seconds}", "baked")?;
     writeln!(out, "{:<12} {up_to_date:>6}", "up to date")?;
     writeln!(out, "{:<12} {failed:>6}", "failed")?;
     if not_run > 0 {

@@ -1,6 +1,7 @@
 //! `furrier report`: error against cost.
 
 mod coat;
+pub(super) mod measure;
 mod render;
 
 use super::console::Console;
