@@ -14,8 +14,12 @@ pub enum Kind {
     Output,
     /// No graphics adapter, or it failed.
     Device,
-    /// A comparison exceeded its limit (`compare`, `report coat`).
+    /// A comparison exceeded its limit (`compare`, `report coat`, `batch`).
     Difference,
+    /// Some of many assets failed (`batch`).
+    Some,
+    /// The machine failed, not an asset: another or a later try may succeed (`batch run`). As `EX_TEMPFAIL` of BSD's sysexits.h.
+    Machine,
 }
 
 impl Kind {
@@ -27,6 +31,8 @@ impl Kind {
             Self::Input => 3,
             Self::Output => 4,
             Self::Device => 5,
+            Self::Some => 6,
+            Self::Machine => 75,
         }
     }
 }

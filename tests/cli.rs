@@ -11,7 +11,7 @@ fn furrier() -> Command {
 
 #[test]
 fn help_names_every_exit_code() {
-    let codes = [1, 2, 3, 4, 5].map(|code| predicate::str::contains(format!("\n  {code}  ")));
+    let codes = [1, 2, 3, 4, 5, 6, 75].map(|code| predicate::str::contains(format!("\n  {code:<2} ")));
     let mut result = furrier().arg("--help").assert().success().stderr("");
     for code in codes {
         result = result.stdout(code);

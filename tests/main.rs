@@ -11,6 +11,7 @@ mod architecture;
 mod atlas;
 mod axes;
 mod bake;
+mod batch;
 mod circles;
 mod cli;
 mod coat_file;

@@ -14,6 +14,15 @@ pub fn is_glb(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }
 
+/// Bytes before the JSON of a GLB.
+pub const BEFORE_JSON: u64 = 20;
+
+/// How long the JSON is that begins after the first [`BEFORE_JSON`] bytes, where these are the start of a GLB.
+pub fn json_length(start: &[u8]) -> Option<u64> {
+    let length = start.get(12..16).filter(|_| is_glb(start))?;
+    Some(u64::from(u32::from_le_bytes([length[0], length[1], length[2], length[3]])))
+}
+
 /// The JSON and binary chunks of a GLB, and what was odd about it.
 ///
 /// # Errors

@@ -10,6 +10,7 @@ mod draco;
 mod encode;
 mod extension;
 mod glb;
+pub mod glimpse;
 pub mod image;
 mod json;
 pub mod ktx2;

@@ -7,6 +7,7 @@ mod extent;
 mod fan;
 mod finest;
 pub mod picture;
+pub mod recipe;
 mod regions;
 mod skin;
 mod textures;
@@ -32,6 +33,7 @@ use crate::math::Vec3;
 use crate::metrics::timing;
 use crate::preset::Preset;
 use crate::volume::scene::{HairScattering, crowding};
+use serde::{Deserialize, Serialize};
 use skin::{Groomed, Role};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -40,7 +42,8 @@ use units::{Scale, Units};
 use weld::Skin;
 
 /// How to choose texture coordinates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Method {
     /// Lapped patches.
     Lapped,

@@ -4,21 +4,28 @@ use super::extent::{self, Extent};
 use crate::asset::{Asset, Part};
 use crate::error::{Error, Result};
 use crate::preset::Preset;
+use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
 /// Length of a unit of the file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Units {
     /// What is furred is as large as the animal that the preset describes, unless it is a small part of a figure; built-in
     /// samples are in metres.
+    #[default]
+    #[serde(rename = "auto")]
     Auto,
     /// Metres.
+    #[serde(rename = "m")]
     Metres,
     /// Centimetres.
+    #[serde(rename = "cm")]
     Centimetres,
     /// Millimetres.
+    #[serde(rename = "mm")]
     Millimetres,
     /// Inches.
+    #[serde(rename = "in")]
     Inches,
 }
 

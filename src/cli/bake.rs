@@ -3,15 +3,13 @@
 use super::axes::AxesArgs;
 use super::console::Console;
 use super::output;
+use super::recipe::RecipeArgs;
 use crate::asset::Reading;
-use crate::asset::coat::Fallback;
-use crate::bake::units::Units;
-use crate::bake::{Baked, Laid, Method, Request, bake};
+use crate::bake::{Baked, Laid, Request, bake};
 use crate::coat::summary::{Summary, summarise};
 use crate::error::{Error, Result};
 use crate::metrics::timing::Report;
-use crate::preset::Preset;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -22,83 +20,25 @@ use std::path::{Path, PathBuf};
 pub struct Bake {
     /// A .glb, .gltf, .vrm or .obj file, or sample:NAME
     input: String,
+    /// Inputs after the first one are answered with how to bake several.
+    #[arg(hide = true)]
+    others: Vec<String>,
     /// The .glb, .gltf or .vrm to write; never the input itself
     #[arg(short, long, value_name = "OUT.glb")]
     output: PathBuf,
-    /// A built-in preset or a TOML file, for every furred material or for the one named; repeatable. Default: fox
-    #[arg(long = "preset", value_name = "[MATERIAL=]NAME|FILE")]
-    presets: Vec<String>,
-    /// Change one value of every preset used; repeatable
-    #[arg(long = "set", value_name = "TABLE.KEY=VALUE")]
-    settings: Vec<String>,
-    /// Fur the material of this name; repeatable. Default: all but transparent ones, cards cut out by alpha, and those named as
-    /// eyes, nose, mouth, teeth, claws, hooves, horns, whiskers, glasses, ground and the like
-    #[arg(long = "material", value_name = "NAME")]
-    materials: Vec<String>,
-    /// What one unit of the file is; auto takes what is furred to be as large as what the preset describes; where that is a small
-    /// part of a figure, as a hat is, it takes the unit that makes the figure as large as an animal or a person
-    #[arg(long, value_enum, default_value_t = UnitName::Auto)]
-    units: UnitName,
+    #[command(flatten)]
+    recipe: RecipeArgs,
     #[command(flatten)]
     axes: AxesArgs,
     /// Take off the coat that the input wears already, as `furrier strip` does, and bake a new one
     #[arg(long)]
     rebake: bool,
-    /// How the skin is laid out in the plane: patches grown along the hair, charts with texels of their own, or the
-    /// asset's own UVs
-    #[arg(long, value_enum, default_value_t = Layout::Lapped)]
-    parameterisation: Layout,
-    /// The UV set that `--parameterisation uv` takes [default: 0]
-    #[arg(long, value_name = "N")]
-    uv_set: Option<usize>,
-    /// Layers, the opaque skin included: overrides every preset's shells.layers
-    #[arg(long, value_name = "N")]
-    layers: Option<u32>,
-    /// Texels along a tile's edge: overrides every preset's shells.texture_size. With `--parameterisation atlas`, those
-    /// along the edge of the whole atlas [default there: four times the preset's]
-    #[arg(long, value_name = "N")]
-    texture_size: Option<u32>,
-    /// Where random numbers start; the same seed gives the same bytes
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    seed: u64,
     /// Threads to compute with, 1 to 1024; the result does not depend on it. Default: all
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// What programs without the extension show: the bare skin, or N shells as plain meshes
-    #[arg(long, value_name = "none|shells:N", default_value = "shells:8", value_parser = fallback)]
-    fallback: Fallback,
     /// Measure the coat against its strands, and write times, sizes and errors to this JSON file
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum UnitName {
-    Auto,
-    M,
-    Cm,
-    Mm,
-    In,
-}
-
-impl UnitName {
-    /// What it stands for.
-    pub(super) fn units(self) -> Units {
-        match self {
-            Self::Auto => Units::Auto,
-            Self::M => Units::Metres,
-            Self::Cm => Units::Centimetres,
-            Self::Mm => Units::Millimetres,
-            Self::In => Units::Inches,
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Layout {
-    Lapped,
-    Atlas,
-    Uv,
 }
 
 const EXAMPLES: &str = "\
@@ -146,7 +86,10 @@ impl Bake {
     /// # Errors
     /// As [`bake`], and where an option or a preset asks for something impossible.
     pub fn run(self, console: &Console) -> Result<()> {
-        let request = self.request()?;
+        self.refuse_several()?;
+        let recipe = self.recipe.choices().recipe()?;
+        let reading = Reading { rebake: self.rebake, ..self.axes.reading()? };
+        let request = Request { reading, ..recipe.request(&self.input, &self.output, self.report.is_some()) };
         output::check(&self.output, &[Path::new(&self.input)])?;
         if let Some(report) = &self.report {
             output::check(report, &[Path::new(&self.input), &self.output])?;
@@ -184,80 +127,19 @@ impl Bake {
         })
     }
 
-    fn request(&self) -> Result<Request> {
-        let mut preset = None;
-        let mut presets: Vec<(String, Preset)> = Vec::new();
-        for choice in &self.presets {
-            let (material, name) = split_choice(choice);
-            let chosen = self.adjusted(Preset::load(name)?)?;
-            let doubled = match material {
-                Some(material) if presets.iter().any(|(m, _)| m == material) => Some(material),
-                Some(material) => {
-                    presets.push((material.to_owned(), chosen));
-                    None
-                }
-                None => preset.replace(chosen).map(|_| "all materials"),
-            };
-            if let Some(material) = doubled {
-                return Err(Error::usage("two presets are given for the same material")
-                    .with_field("--preset")
-                    .with_found(format!("{choice}, after another one for {material}"))
-                    .with_expected("one preset for all materials, and one for each material by name"));
-            }
-        }
-        let preset = match preset {
-            Some(preset) => preset,
-            None => self.adjusted(Preset::load("fox")?)?,
+    /// One input makes one output; where there are more, `furrier batch` is meant.
+    fn refuse_several(&self) -> Result<()> {
+        let (what, found) = if let Some(second) = self.others.first() {
+            ("one bake has one input", format!("{} and {second}", self.input))
+        } else if Path::new(&self.input).is_dir() {
+            ("one bake has one input", format!("the folder {}", self.input))
+        } else {
+            return Ok(());
         };
-        if self.uv_set.is_some() && self.parameterisation != Layout::Uv {
-            return Err(Error::usage("a UV set is chosen, but not used")
-                .with_field("--uv-set")
-                .with_hint("add `--parameterisation uv`"));
-        }
-        Ok(Request {
-            input: self.input.clone(),
-            reading: Reading { rebake: self.rebake, ..self.axes.reading()? },
-            out: self.output.clone(),
-            preset,
-            presets,
-            materials: self.materials.clone(),
-            units: self.units.units(),
-            method: match self.parameterisation {
-                Layout::Lapped => Method::Lapped,
-                Layout::Atlas => Method::Atlas { texels: self.texture_size },
-                Layout::Uv => Method::Uv(self.uv_set.unwrap_or(0)),
-            },
-            seed: self.seed,
-            fallback: self.fallback,
-            judge: self.report.is_some(),
-        })
-    }
-
-    /// `preset` with what the options say instead.
-    fn adjusted(&self, preset: Preset) -> Result<Preset> {
-        let mut preset = preset.with_settings(&self.settings)?;
-        preset.shells.layers = self.layers.unwrap_or(preset.shells.layers);
-        preset.shells.texture_size = self.texture_size.unwrap_or(preset.shells.texture_size);
-        preset.checked()
-    }
-}
-
-/// `[MATERIAL=]NAME|FILE`: what is a preset as it stands has no material.
-fn split_choice(choice: &str) -> (Option<&str>, &str) {
-    match choice.split_once('=') {
-        Some((material, name)) if Preset::source_of(choice).is_err() => (Some(material), name),
-        _ => (None, choice),
-    }
-}
-
-fn fallback(text: &str) -> std::result::Result<Fallback, String> {
-    match text.split_once(':') {
-        None if text == "none" => Ok(Fallback::None),
-        Some(("shells", count)) => match count.parse() {
-            Ok(count @ 1..=255) => Ok(Fallback::Shells(count)),
-            _ => Err(format!("`{count}` is not a number of shells from 1 to 255")),
-        },
-        _ => Err("expected `none` or `shells:N`".to_owned()),
+        Err(Error::usage(what)
+            .with_found(found)
+            .with_expected("one .glb, .gltf or .obj file, or sample:NAME")
+            .with_hint("`furrier batch` bakes folders and several files; give `output` a folder there"))
     }
 }
 

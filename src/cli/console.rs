@@ -44,12 +44,16 @@ impl Console {
         } else {
             text(&mut out)
         };
-        match written.and_then(|()| out.flush()) {
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-                Err(Error::new(Kind::Output, "the result could not be printed").with_found(error))
-            }
-            _ => Ok(()),
-        }
+        printed(written.and_then(|()| out.flush()))
+    }
+
+    /// Prints a line on stdout for a program that reads along.
+    ///
+    /// # Errors
+    /// As [`Self::result`].
+    pub fn line(&self, text: &str) -> Result<()> {
+        let mut out = io::stdout().lock();
+        printed(writeln!(out, "{text}").and_then(|()| out.flush()))
     }
 
     /// Progress of a command that takes time.
@@ -88,8 +92,23 @@ impl Console {
         let _ = write!(io::stderr(), "{text}");
     }
 
+    /// Whether nothing but results and errors is printed.
+    pub fn quiet(&self) -> bool {
+        self.quiet
+    }
+
     /// Whether results are asked for as JSON.
     pub fn json(&self) -> bool {
         self.json
+    }
+}
+
+/// A stdout that takes no more is a failure; a reader who has gone away is none.
+fn printed(written: io::Result<()>) -> Result<()> {
+    match written {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Error::new(Kind::Output, "the result could not be printed").with_found(error))
+        }
+        _ => Ok(()),
     }
 }

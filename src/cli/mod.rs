@@ -2,6 +2,7 @@
 
 mod axes;
 mod bake;
+mod batch;
 mod compare;
 mod completions;
 mod console;
@@ -11,6 +12,7 @@ mod inspect;
 mod output;
 mod presets;
 mod progress;
+mod recipe;
 mod render;
 mod report;
 mod stage;
@@ -44,6 +46,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Bake(bake::Bake),
+    Batch(batch::Batch),
     Render(render::Render),
     Report(report::Report),
     View(view::View),
@@ -63,6 +66,8 @@ Exit codes:
   3  an input file is missing, broken or unsupported
   4  an output could not be written
   5  there is no graphics adapter, or it failed
+  6  some assets of a batch failed; the others are baked
+  75 the machine failed, not an asset, and what was asked for may succeed elsewhere or later (batch run)
 
 Results go to stdout; progress, warnings and errors to stderr.";
 
@@ -101,6 +106,7 @@ impl Command {
     fn run(self, console: &Console) -> Result<()> {
         match self {
             Self::Bake(command) => command.run(console),
+            Self::Batch(command) => command.run(console),
             Self::Render(command) => command.run(console),
             Self::Report(command) => command.run(console),
             Self::View(command) => command.run(console),

@@ -1,9 +1,9 @@
 //! `furrier render`.
 
 use super::axes::AxesArgs;
-use super::bake::UnitName;
 use super::console::Console;
 use super::output;
+use super::recipe::UnitName;
 use super::stage::StageArgs;
 use crate::asset::strands;
 use crate::bake::picture::{Grown, Only, PictureRequest};

@@ -15,16 +15,34 @@ use crate::asset::{Asset, Part};
 use crate::data::coat::{Blend, Coat, CoatPrimitive, Cut, Sampled};
 use crate::error::Result;
 use crate::math::{Vec3, Vec4};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
+use std::str::FromStr;
 
 /// What viewers without the extension get to see.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Fallback {
     /// The skin alone.
     None,
     /// This many shells of plain glTF over the skin, at most one per slab.
     Shells(u32),
+}
+
+impl FromStr for Fallback {
+    type Err = String;
+
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        match text.split_once(':') {
+            None if text == "none" => Ok(Self::None),
+            Some(("shells", count)) => match count.parse() {
+                Ok(count @ 1..=255) => Ok(Self::Shells(count)),
+                _ => Err(format!("`{count}` is not a number of shells from 1 to 255")),
+            },
+            _ => Err("expected `none` or `shells:N`".to_owned()),
+        }
+    }
 }
 
 /// Adds `count` shells for every coat primitive, inner to outer, in one mesh per base mesh.

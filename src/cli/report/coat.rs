@@ -1,26 +1,21 @@
 //! `furrier report coat`.
 
 use super::checked_outputs;
+use super::measure::{Seen, Sight, measure};
 use super::subject::Subject;
-use crate::asset::coat::read_coat;
 use crate::asset::write;
 use crate::cli::compare::check_limit;
 use crate::cli::console::Console;
 use crate::cli::output;
-use crate::coat::summary::summarise;
 use crate::error::{Error, Kind, Result};
-use crate::metrics::compare::LinearImage;
 use crate::metrics::timing::SCHEMA_VERSION;
-use crate::report::coat::keep::{Cost, Drawing};
 use crate::report::coat::summary::Group;
-use crate::report::coat::{Fur, Options, Report, look, table, views};
+use crate::report::coat::{Fur, Report, table, views};
 use crate::stage::png;
 use crate::stage::rig::Rig;
-use crate::viewer::sitting::sit;
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::PathBuf;
-use std::time::Instant;
 
 /// Look at a coat from many sides beside the fur that it stands for
 #[derive(Debug, Args)]
@@ -62,31 +57,17 @@ impl Coat {
         let size = self.subject.size()?;
         let distances = views::parse(&self.distances, self.views)?;
         let lights = lights(&self.lights)?;
-        let (device, choice) = self.subject.devices()?;
+        let (device, _) = self.subject.devices()?;
         let preset = self.subject.preset()?;
         let mut keep = self.subject.keep()?;
         let progress = console.progress();
         progress.step("bake");
         let (coat_key, file) = self.subject.baked(&preset, &mut keep, console)?;
-        let (asset, coat) = read_coat(&file)?;
-        progress.step("grow");
-        let fur = Fur::new(self.subject.picture(preset), device, size)?;
-        fur.notes().iter().for_each(|note| console.note(note));
-        let coat_bytes = summarise(&coat).vram_bytes as u64;
-        let (report, adapter) = sit(&asset, &coat, &choice, |sitting| {
-            let adapter = sitting.device.clone();
-            let options = Options { size, lights, distances, coat: coat_key.with(&adapter), coat_bytes };
-            let mut draw = |camera: &_, lit| {
-                let start = Instant::now();
-                let drawn = sitting.draw(camera, lit, size, None)?;
-                let triangles = drawn.passes.iter().map(|pass| pass.triangles).sum();
-                let cost = Cost { ms: start.elapsed().as_secs_f64() * 1e3, triangles: Some(triangles) };
-                Ok(Drawing { picture: LinearImage::from(&drawn.picture.film()), cost })
-            };
-            let report = look(&options, &fur, &mut keep, &mut draw, &mut |what| progress.step(what))?;
-            Ok((report, adapter))
-        })?;
+        let sight = Sight { coat: coat_key, fur: self.subject.picture(preset), device, size, lights, distances };
+        let seen = measure(&file, sight, &mut keep, &mut |what| progress.step(what))?;
+        let Seen { report, fur, adapter } = seen;
         progress.finish();
+        fur.notes().iter().for_each(|note| console.note(note));
         report.notes.iter().for_each(|note| console.warning(note));
         let all = self.json(&report, &fur, size, &adapter);
         let title =

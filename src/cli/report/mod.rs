@@ -2,6 +2,7 @@
 
 mod coat;
 mod levels;
+pub(super) mod measure;
 mod render;
 mod subject;
 

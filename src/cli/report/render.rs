@@ -3,9 +3,9 @@
 use super::checked_outputs;
 use crate::asset::{Reading, write};
 use crate::bake::picture::{Grown, Only, PictureRequest};
-use crate::cli::bake::UnitName;
 use crate::cli::console::Console;
 use crate::cli::output;
+use crate::cli::recipe::UnitName;
 use crate::cli::stage::StageArgs;
 use crate::error::Result;
 use crate::metrics::compare::load;

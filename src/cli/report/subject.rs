@@ -4,7 +4,7 @@ use crate::asset::Reading;
 use crate::asset::coat::Fallback;
 use crate::bake::picture::{Only, PictureRequest};
 use crate::bake::{Method, Request, bake};
-use crate::cli::bake::{Layout, UnitName};
+use crate::cli::recipe::{LayoutName, UnitName};
 use crate::cli::console::Console;
 use crate::cli::stage::size;
 use crate::error::Result;
@@ -37,8 +37,8 @@ pub struct Subject {
     #[arg(long, value_enum, default_value_t = UnitName::Auto)]
     units: UnitName,
     /// How the skin is laid out in the plane, as `bake` does it
-    #[arg(long, value_enum, default_value_t = Layout::Lapped)]
-    parameterisation: Layout,
+    #[arg(long, value_enum, default_value_t = LayoutName::Lapped)]
+    parameterisation: LayoutName,
     /// Layers, the opaque skin included: overrides the preset's shells.layers
     #[arg(long, value_name = "N")]
     layers: Option<u32>,
@@ -104,9 +104,9 @@ impl Subject {
         preset.shells.texture_size = self.texture_size.unwrap_or(preset.shells.texture_size);
         let preset = preset.checked()?;
         let method = match self.parameterisation {
-            Layout::Lapped => Method::Lapped,
-            Layout::Atlas => Method::Atlas { texels: self.texture_size },
-            Layout::Uv => Method::Uv(0),
+            LayoutName::Lapped => Method::Lapped,
+            LayoutName::Atlas => Method::Atlas { texels: self.texture_size },
+            LayoutName::Uv => Method::Uv(0),
         };
         let key = Key::default().program()?.asset(&self.input)?.preset(&preset)?;
         let key = key.with((&self.materials, self.units.units(), method, self.seed));
