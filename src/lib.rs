@@ -4,6 +4,7 @@
 
 pub mod asset;
 pub mod bake;
+pub mod cache;
 pub mod cast;
 pub mod cli;
 pub mod coat;

@@ -1,5 +1,6 @@
 //! `furrier bake`.
 
+use super::cache_flags::CacheFlags;
 use super::console::Console;
 use super::output;
 use crate::asset::coat::Fallback;
@@ -73,6 +74,8 @@ pub struct Bake {
     /// Measure the coat against its strands, and write times, sizes and errors to this JSON file
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
+    #[command(flatten)]
+    cache: CacheFlags,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -206,6 +209,7 @@ impl Bake {
             seed: self.seed,
             fallback: self.fallback,
             judge: self.report.is_some(),
+            cache: self.cache.store(),
         })
     }
 
@@ -263,6 +267,7 @@ fn report(baked: &Baked, total_ms: f64) -> Value {
             "vram_bytes": summary.vram_bytes,
         },
         "error": { "coverage_by_tile": baked.accuracy },
+        "cache": baked.cached,
         "patches_by_primitive": patches,
     });
     output::report(&report, more)

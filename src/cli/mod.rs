@@ -1,6 +1,8 @@
 //! Floor 10: the command line. One file per subcommand: parse, call the library, print.
 
 mod bake;
+mod cache;
+mod cache_flags;
 mod compare;
 mod completions;
 mod console;
@@ -47,6 +49,7 @@ enum Command {
     View(view::View),
     Inspect(inspect::Inspect),
     Compare(compare::Compare),
+    Cache(cache::Cache),
     Presets(presets::Presets),
     Devices(devices::Devices),
     Completions(completions::Completions),
@@ -103,6 +106,7 @@ impl Command {
             Self::View(command) => command.run(console),
             Self::Compare(command) => command.run(console),
             Self::Inspect(command) => command.run(console),
+            Self::Cache(command) => command.run(console),
             Self::Presets(command) => command.run(console),
             Self::Devices(command) => command.run(console),
             Self::Completions(command) => command.run(console),

@@ -8,9 +8,10 @@ use super::shells::encode::{Raw, encode};
 use super::shells::{ShellParameters, ends, gains, undercoat};
 use crate::data::coat::{Sampled, Tile, TileLooks};
 use crate::math::Vec3;
+use serde::Serialize;
 
 /// What is baked from a tile's hair.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct TileRecipe {
     /// Name of the preset.
     pub preset: String,
@@ -43,8 +44,22 @@ pub(super) fn undercoat_shares(guard: &[f32], all: &[f32]) -> Vec<f32> {
         .collect()
 }
 
+/// What casting rays tells of a tile: most of the work. Colours do not matter to it, so all hair that grows alike has the same.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RaysTold {
+    /// κ of guard hair per voxel ([`ends::guard_ends`]).
+    pub ends: Option<Vec<f32>>,
+    /// Gains per mip and layer ([`gains::fit`]).
+    pub gains: Option<Vec<Vec<[f32; 9]>>>,
+}
+
 /// Bakes the textures of a tile.
 pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
+    bake_with(hair, recipe, &mut RaysTold::default())
+}
+
+/// The same with what rays `told` of hair that grows as this does; what they have not told yet they then have.
+pub fn bake_with(hair: &TileHair, recipe: &TileRecipe, told: &mut RaysTold) -> Tile {
     let size = recipe.shells.texture_size as usize;
     let slabs = recipe.shells.layers as usize - 1;
     let lean = leaning(recipe.lean_deg);
@@ -53,7 +68,8 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
         let slopes = mean_slopes(&hair.guard, slabs, hair.height_m);
         let layout = VoxelLayout::tile(size, slabs, hair.edge_m, hair.height_m);
         let mut voxels = Voxels::deposited(layout, &hair.guard, &slopes);
-        let mut kappa = ends::guard_ends(&hair.guard, &voxels, &slopes);
+        let guard_ends = told.ends.clone().unwrap_or_else(|| ends::guard_ends(&hair.guard, &voxels, &slopes));
+        let mut kappa = guard_ends.clone();
         let guard = slab_means(&voxels.extinction, slabs);
         if let Some(medium) = &hair.undercoat {
             undercoat::add(medium, &slopes, &mut voxels, &mut kappa);
@@ -68,14 +84,14 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
             skin_share: &[],
         });
         let shares = undercoat_shares(&guard, &slab_means(&voxels.extinction, slabs));
-        (shells, slab_means(&above.voxels, slabs), shares)
+        (shells, slab_means(&above.voxels, slabs), shares, guard_ends)
     };
     let truth = || {
-        let mapped = hair.mapped(lean);
-        gains::seen_through(mapped.scene(), mapped.edge_m, mapped.height_m, slabs, lean)
+        let mapped = told.gains.is_none().then(|| hair.mapped(lean))?;
+        Some(gains::seen_through(mapped.scene(), mapped.edge_m, mapped.height_m, slabs, lean))
     };
     let fin = || texture::composite(hair, &recipe.fins);
-    let ((shells, slab_above, shares), (truth, fin)) = rayon::join(shells, || rayon::join(truth, fin));
+    let ((shells, slab_above, shares, guard_ends), (truth, fin)) = rayon::join(shells, || rayon::join(truth, fin));
     let mut tile = Tile {
         preset: recipe.preset.clone(),
         sampled: Sampled::Square,
@@ -85,7 +101,13 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
         fin: texture::encode(&fin, hair, &recipe.fins, &slab_above),
         looks: recipe.looks(&shares),
     };
-    tile.shells.gains = gains::fit(&tile, &truth, lean);
+    if let Some(truth) = truth {
+        told.gains = Some(gains::fit(&tile, &truth, lean));
+    }
+    if let Some(gains) = &told.gains {
+        tile.shells.gains.clone_from(gains);
+    }
+    told.ends = Some(guard_ends);
     tile
 }
 

@@ -183,6 +183,7 @@ impl Coat {
                     seed: self.seed,
                     fallback: Fallback::None,
                     judge: false,
+                    cache: None,
                 },
                 &mut |_| {},
             )?;
