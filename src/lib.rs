@@ -5,6 +5,7 @@
 pub mod asset;
 pub mod bake;
 pub mod batch;
+pub mod cache;
 pub mod cast;
 pub mod cli;
 pub mod coat;

@@ -14,6 +14,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("metrics", 2),
     ("shade", 2),
     ("stage", 2),
+    ("cache", 3),
     ("fur", 3),
     ("volume", 4),
     ("cast", 5),

@@ -44,7 +44,9 @@ pub fn shared() -> Option<PathBuf> {
     Some(folder)
 }
 
-/// The binary under test.
+/// The binary under test. It keeps nothing in the cache of whoever runs the tests: `.cargo/config.toml` sees to that.
 pub fn furrier_path() -> &'static Path {
+    let cache = std::env::var_os("FURRIER_CACHE");
+    assert!(cache.is_some_and(|folder| folder.is_empty()), "tests run with FURRIER_CACHE= , as `cargo test` sets it");
     assert_cmd::cargo::cargo_bin!("furrier")
 }

@@ -182,6 +182,7 @@ fn a_whorl_turns_hair_where_it_says_and_one_that_misses_is_told() {
             seed: 0,
             fallback: Fallback::None,
             judge: false,
+            cache: None,
         };
         bake(&request, &mut |_| {}).unwrap()
     };

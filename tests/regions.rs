@@ -54,6 +54,7 @@ fn baked_as(input: &Path, folder: &Path, own: &str, fallback: Fallback) -> (asse
         seed: 1,
         fallback,
         judge: false,
+        cache: None,
     };
     bake(&request, &mut |_| ()).unwrap();
     asset::read_coat(&out).unwrap()

@@ -52,6 +52,7 @@ fn request(preset: Preset, out: &std::path::Path) -> Request {
         seed: 1,
         fallback: Fallback::None,
         judge: false,
+        cache: None,
     }
 }
 

@@ -241,6 +241,7 @@ fn baked(input: &Path, materials: &[&str], preset: &str) -> (Asset, Baked) {
         seed: 0,
         fallback: Fallback::None,
         judge: false,
+        cache: None,
     };
     let baked = bake(&request, &mut |_| {}).unwrap();
     (asset::load(&request.input).unwrap(), baked)

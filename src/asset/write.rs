@@ -54,8 +54,21 @@ fn folder(path: &Path) -> &Path {
 }
 
 fn stage(path: &Path, bytes: &[u8]) -> std::io::Result<tempfile::NamedTempFile> {
+    let file = aside(path, bytes)?;
+    file.as_file().sync_all()?;
+    Ok(file)
+}
+
+/// How names of files that are being written begin and end.
+pub const ASIDE: [&str; 2] = [".furrier-", ".part"];
+
+/// A temporary file beside `path` with these bytes, to be renamed; the system may not have them on the disk yet.
+///
+/// # Errors
+/// Where it cannot be written; nothing is then left behind.
+pub fn aside(path: &Path, bytes: &[u8]) -> std::io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".furrier-").suffix(".part");
+    builder.prefix(ASIDE[0]).suffix(ASIDE[1]);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -64,7 +77,6 @@ fn stage(path: &Path, bytes: &[u8]) -> std::io::Result<tempfile::NamedTempFile> 
     }
     let mut file = builder.tempfile_in(folder(path))?;
     file.write_all(bytes)?;
-    file.as_file().sync_all()?;
     Ok(file)
 }
 

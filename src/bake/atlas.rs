@@ -1,6 +1,8 @@
 //! An atlas: hair grown on the parts themselves, charts of all of them in one square.
 
-use super::{CoatedParts, Laid, Steps, Task, finest, recipe};
+use super::steps::Steps;
+use super::tiles::recipe;
+use super::{CoatedParts, Laid, Task, finest};
 use crate::coat::atlas::{self, judge};
 use crate::coat::measures::Measures;
 use crate::error::{Error, Result};

@@ -10,36 +10,39 @@ pub mod picture;
 pub mod recipe;
 mod regions;
 mod skin;
+mod steps;
 mod textures;
+mod tiles;
 pub mod units;
 mod wear;
 mod weld;
 
 use crate::asset::coat::{Fallback, check_output, refuse_second, write_coat};
 use crate::asset::{self, Asset, Part, Reading};
+use crate::cache::Store;
 use crate::coat::axes::axes;
-use crate::coat::hair::{TileHair, leaning};
-use crate::coat::judge::{CoverageRow, Effort, coverage_table};
+use crate::coat::judge::CoverageRow;
 use crate::coat::measures::Measures;
 use crate::coat::seams::{WINDOWS, before_after};
 use crate::coat::summary::draw_calls_note;
-use crate::coat::tile::{TileRecipe, bake as bake_tile};
-use crate::data::coat::{Blend, Coat, CoatPrimitive, Tile, TileLooks};
+use crate::data::coat::{Blend, Coat, CoatPrimitive, Tile};
 use crate::error::{Error, Result};
 use crate::fur::field::Singularity;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::patch::{Parameterisation, parameterise};
-use crate::math::Vec3;
 use crate::metrics::timing;
 use crate::preset::Preset;
-use crate::volume::scene::{HairScattering, crowding};
 use serde::{Deserialize, Serialize};
 use skin::{Groomed, Role};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use steps::Steps;
 use textures::Textures;
+use tiles::tile_of;
 use units::{Scale, Units};
 use weld::Skin;
+
+pub use steps::{Cached, Uses};
 
 /// How to choose texture coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -81,6 +84,8 @@ pub struct Request {
     pub fallback: Fallback,
     /// Whether to measure the result against its strands.
     pub judge: bool,
+    /// Where stages are kept from one bake to the next; none to do all of it. The result is the same.
+    pub cache: Option<Store>,
 }
 
 /// What was baked.
@@ -100,8 +105,10 @@ pub struct Baked {
     pub laid: Vec<Laid>,
     /// Coverage of each tile against its strands, when asked for.
     pub accuracy: Vec<Vec<CoverageRow>>,
-    /// Time per step, in order.
+    /// Time per step, in order; a step whose result came from the cache is not among them.
     pub steps: timing::Steps,
+    /// What came from the cache; none where there is none.
+    pub cached: Option<Cached>,
 }
 
 /// How hair lies on the parts that were laid out together.
@@ -117,28 +124,12 @@ pub struct Laid {
     pub ms: f64,
 }
 
-/// Measures steps and tells of them.
-struct Steps<'a> {
-    tell: &'a mut dyn FnMut(&'static str),
-    steps: timing::Steps,
-}
-
-impl Steps<'_> {
-    fn run<T>(&mut self, name: &'static str, step: impl FnOnce() -> T) -> T {
-        (self.tell)(name);
-        let start = Instant::now();
-        let result = step();
-        self.steps.add_since(name, start, 0);
-        result
-    }
-}
-
 /// Bakes and writes. `tell` hears the name of each step as it begins.
 ///
 /// # Errors
 /// When the input cannot be used, names something that is not there, or the output cannot be written.
 pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Baked> {
-    let mut steps = Steps { tell, steps: timing::Steps::default() };
+    let mut steps = Steps::new(tell, request.cache.clone());
     check_output(&request.out, &[])?;
     let mut asset = steps.run("read", || asset::load_as(&request.input, &request.reading))?;
     refuse_second(&asset)?;
@@ -167,6 +158,7 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
         laid: Vec::new(),
         accuracy: Vec::new(),
         steps: timing::Steps::default(),
+        cached: None,
     };
     let hair_m = Fibre::guard(&request.preset.guard, &request.preset.colour, scale.diagonal_m as f32).length_m;
     let skin =
@@ -214,10 +206,9 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
     coat.primitives.extend(carried.into_iter().map(|(_, primitive)| primitive));
     notes.extend(steps.run("write", || write_coat(&asset, &coat, request.fallback, &request.out))?);
     notes.extend(draw_calls_note(&coat));
-    baked.coat = coat;
-    (baked.notes, baked.warnings) = (notes, warnings);
-    baked.steps = steps.steps;
-    Ok(baked)
+    let (times, cached, cache_warnings) = steps.done();
+    warnings.extend(cache_warnings);
+    Ok(Baked { coat, notes, warnings, steps: times, cached, ..baked })
 }
 
 /// Parts that one tile is made for.
@@ -267,38 +258,6 @@ impl Task<'_> {
     fn materials(&self, parts: &[usize]) -> String {
         names(parts.iter().map(|&part| &self.asset.parts[part])).join(", ")
     }
-}
-
-/// What is baked of hair of a preset's two kinds.
-fn recipe(preset: &Preset, fibres: [&Fibre; 2]) -> Result<TileRecipe> {
-    let scattering = HairScattering::new(&preset.fibre)?;
-    Ok(TileRecipe {
-        preset: preset.name.clone(),
-        shells: preset.shells,
-        fins: preset.fins,
-        skin: Vec3::from(preset.colour.skin),
-        lean_deg: preset.groom.lean_deg,
-        looks: Some(TileLooks {
-            of: [scattering.guard.packed(), scattering.undercoat.packed()],
-            crowding: fibres.map(crowding),
-            undercoat_share: Vec::new(),
-        }),
-    })
-}
-
-/// Grows and bakes the tile of a preset, and measures it where that is asked for.
-fn tile_of(task: &Task<'_>, preset: &Preset, steps: &mut Steps<'_>) -> Result<(Tile, Option<Vec<CoverageRow>>)> {
-    let ([guard, undercoat], request) = (task.fibres(preset), task.request);
-    let recipe = recipe(preset, [&guard, &undercoat])?;
-    let edge_m = recipe.shells.tile_mm * 1e-3;
-    let hair = steps.run("grow", || TileHair::grow(&guard, &undercoat, edge_m, request.seed));
-    let tile = steps.run("tile", || bake_tile(&hair, &recipe));
-    let judge = || {
-        let effort = Effort { pixels: 32, supersampling: 2 };
-        coverage_table(&hair, &tile, leaning(recipe.lean_deg), effort)
-    };
-    let accuracy = request.judge.then(|| steps.run("judge", judge));
-    Ok((tile, accuracy))
 }
 
 /// Bakes the tiles of a preset and its regions, and puts them on each part over patches of its own.

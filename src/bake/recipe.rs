@@ -163,6 +163,7 @@ impl Recipe {
             seed: self.seed,
             fallback: self.fallback,
             judge,
+            cache: None,
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Several presets on one part: which tile each triangle carries, and where one passes into another.
 
+use super::Task;
 use super::skin::{Groomed, OF_PRESET};
+use super::steps::Steps;
 use super::wear::subset;
-use super::{Steps, Task};
 use crate::asset::image;
 use crate::coat::axes::axes;
 use crate::data::coat::{Blend, CoatPrimitive, Tile};

@@ -1,6 +1,7 @@
 //! `furrier bake`.
 
 use super::axes::AxesArgs;
+use super::cache_flags::CacheFlags;
 use super::console::Console;
 use super::output;
 use super::recipe::RecipeArgs;
@@ -39,6 +40,8 @@ pub struct Bake {
     /// Measure the coat against its strands, and write times, sizes and errors to this JSON file
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
+    #[command(flatten)]
+    cache: CacheFlags,
 }
 
 const EXAMPLES: &str = "\
@@ -89,7 +92,8 @@ impl Bake {
         self.refuse_several()?;
         let recipe = self.recipe.choices().recipe()?;
         let reading = Reading { rebake: self.rebake, ..self.axes.reading()? };
-        let request = Request { reading, ..recipe.request(&self.input, &self.output, self.report.is_some()) };
+        let cache = self.cache.store();
+        let request = Request { reading, cache, ..recipe.request(&self.input, &self.output, self.report.is_some()) };
         output::check(&self.output, &[Path::new(&self.input)])?;
         if let Some(report) = &self.report {
             output::check(report, &[Path::new(&self.input), &self.output])?;
@@ -169,6 +173,7 @@ fn report(baked: &Baked, total_ms: f64) -> Value {
             "vram_bytes": summary.vram_bytes,
         },
         "error": { "coverage_by_tile": baked.accuracy },
+        "cache": baked.cached,
         "patches_by_primitive": patches,
     });
     output::report(&report, more)

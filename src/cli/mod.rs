@@ -3,6 +3,8 @@
 mod axes;
 mod bake;
 mod batch;
+mod cache;
+mod cache_flags;
 mod compare;
 mod completions;
 mod console;
@@ -53,6 +55,7 @@ enum Command {
     Inspect(inspect::Inspect),
     Compare(compare::Compare),
     Strip(strip::Strip),
+    Cache(cache::Cache),
     Presets(presets::Presets),
     Devices(devices::Devices),
     Completions(completions::Completions),
@@ -113,6 +116,7 @@ impl Command {
             Self::Compare(command) => command.run(console),
             Self::Inspect(command) => command.run(console),
             Self::Strip(command) => command.run(console),
+            Self::Cache(command) => command.run(console),
             Self::Presets(command) => command.run(console),
             Self::Devices(command) => command.run(console),
             Self::Completions(command) => command.run(console),

@@ -8,13 +8,13 @@ use crate::data::coat::Tile;
 use crate::data::ray::DepthRange;
 use crate::data::shell::{Incidence, Stack, slab_optical_depth};
 use crate::math::{Mat3, Vec2, Vec3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Angles between ray and normal that are judged, degrees.
 pub const ANGLES_DEG: [f32; 6] = [0.0, 20.0, 40.0, 60.0, 75.0, 85.0];
 
 /// One angle's result: coverages in [0, 1], errors as root mean square after a 4 × 4 box.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CoverageRow {
     /// Angle between ray and skin normal, degrees.
     pub theta_deg: f32,
@@ -34,7 +34,7 @@ pub struct CoverageRow {
 const PIXEL: f32 = 15.0 / 16.0;
 
 /// How closely to look.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Effort {
     /// Pixels along the edge of the square looked at, a multiple of 4; one pixel is 15/16 of a texel of mip 0.
     pub pixels: usize,

@@ -11,9 +11,10 @@ use crate::data::coat::{Level, Sampled, ShellStack, Tile, TileLooks};
 use crate::data::shell::Slabs;
 use crate::math::Vec3;
 use rayon::prelude::*;
+use serde::Serialize;
 
 /// What is baked from a tile's hair.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct TileRecipe {
     /// Name of the preset.
     pub preset: String,
@@ -54,25 +55,42 @@ const TEXELS_PER_PX: f32 = 3.0;
 /// Slabs of a level up to which the skin below looks like its coat.
 const LIKE_SKIN: usize = 2;
 
+/// What casting rays tells of a tile: most of the work. Colours do not matter to it, so all hair that grows alike has the same.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RaysTold {
+    /// κ of guard hair per voxel of each level ([`ends::guard_ends`]).
+    pub ends: Option<Vec<Vec<f32>>>,
+    /// Gains of each level per mip and layer ([`gains::fit`]).
+    pub gains: Option<Vec<Vec<Vec<[f32; 9]>>>>,
+}
+
 /// Bakes the textures of a tile and of its levels, each with half as many slabs as the one before, down to one.
 pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
+    bake_with(hair, recipe, &mut RaysTold::default())
+}
+
+/// The same with what rays `told` of hair that grows as this does; what they have not told yet they then have.
+pub fn bake_with(hair: &TileHair, recipe: &TileRecipe, told: &mut RaysTold) -> Tile {
     let lean = leaning(recipe.lean_deg);
     let counts = std::iter::successors(Some(recipe.shells.layers as usize - 1), |&n| (n > 1).then_some(n / 2));
     let by_height = ByHeight::new(hair);
     let cuts: Vec<Slabs> = counts.map(|count| by_height.cut(count)).collect();
     // The textures, the fin and the truth that gains are fitted to need nothing of each other.
+    let ends = told.ends.take().filter(|ends| ends.len() == cuts.len());
+    let known = |level: usize| ends.as_ref().map(|ends| ends[level].clone());
     let stacks = || {
         cuts.par_iter()
             .enumerate()
-            .map(|(level, cut)| stack(hair, &by_height, recipe, (level, cut)))
+            .map(|(level, cut)| stack(hair, &by_height, recipe, (level, cut), known(level)))
             .collect::<Vec<_>>()
     };
     let truth = || {
-        let mapped = hair.mapped(lean);
-        gains::Truth::new(mapped.scene(), mapped.edge_m, mapped.height_m, &cuts, lean)
+        let mapped = told.gains.is_none().then(|| hair.mapped(lean))?;
+        Some(gains::Truth::new(mapped.scene(), mapped.edge_m, mapped.height_m, &cuts, lean))
     };
     let fin = || texture::composite(hair, &recipe.fins);
     let (mut stacks, (truth, fin)) = rayon::join(stacks, || rayon::join(truth, fin));
+    told.ends = Some(stacks.iter_mut().map(|stack| std::mem::take(&mut stack.guard_ends)).collect());
     let own = stacks.remove(0);
     let mut tile = Tile {
         preset: recipe.preset.clone(),
@@ -84,12 +102,14 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
         levels: stacks.into_iter().map(Stacked::level).collect(),
         looks: recipe.looks(&own.shares),
     };
-    let gains: Vec<_> = (0..=tile.levels.len())
-        .into_par_iter()
-        .map(|level| gains::fit(&tile.at_level(level), &truth.of(&cuts[level]), lean))
-        .collect();
+    if let Some(truth) = truth {
+        let fit = |level| gains::fit(&tile.at_level(level), &truth.of(&cuts[level]), lean);
+        told.gains = Some((0..=tile.levels.len()).into_par_iter().map(fit).collect());
+    }
     let stacks = std::iter::once(&mut tile.shells).chain(tile.levels.iter_mut().map(|level| &mut level.shells));
-    stacks.zip(gains).for_each(|(shells, gains)| shells.gains = gains);
+    for (shells, gains) in stacks.zip(told.gains.iter().flatten()) {
+        shells.gains.clone_from(gains);
+    }
     tile
 }
 
@@ -100,6 +120,8 @@ struct Stacked {
     slab_above: Vec<f32>,
     /// Share of undercoat.
     shares: Vec<f32>,
+    /// κ of guard hair per voxel.
+    guard_ends: Vec<f32>,
 }
 
 impl Stacked {
@@ -112,8 +134,14 @@ impl Stacked {
     }
 }
 
-/// The stack of a tile's hair in these slabs, with as many texels as its level needs.
-fn stack(hair: &TileHair, by_height: &ByHeight, recipe: &TileRecipe, (level, cut): (usize, &Slabs)) -> Stacked {
+/// The stack of a tile's hair in these slabs, with as many texels as its level needs; κ of guard hair may be known already.
+fn stack(
+    hair: &TileHair,
+    by_height: &ByHeight,
+    recipe: &TileRecipe,
+    (level, cut): (usize, &Slabs),
+    known: Option<Vec<f32>>,
+) -> Stacked {
     let slabs = cut.count();
     let texels = TEXELS_PER_PX * PX_PER_SLAB * slabs as f32 * hair.edge_m / hair.height_m;
     let finest = recipe.shells.texture_size as usize;
@@ -121,7 +149,8 @@ fn stack(hair: &TileHair, by_height: &ByHeight, recipe: &TileRecipe, (level, cut
     let slopes = mean_slopes(&hair.guard, cut, hair.height_m);
     let layout = VoxelLayout::tile(size, cut.clone(), hair.edge_m, hair.height_m);
     let mut voxels = Voxels::deposited(&layout, &hair.guard, &slopes);
-    let mut kappa = ends::guard_ends(&hair.guard, &voxels, &slopes);
+    let guard_ends = known.unwrap_or_else(|| ends::guard_ends(&hair.guard, &voxels, &slopes));
+    let mut kappa = guard_ends.clone();
     let guard = slab_means(&voxels.extinction, slabs);
     if let Some(medium) = &hair.undercoat {
         undercoat::add(medium, &slopes, &mut voxels, &mut kappa);
@@ -143,6 +172,7 @@ fn stack(hair: &TileHair, by_height: &ByHeight, recipe: &TileRecipe, (level, cut
         shells: encode(&raw),
         slab_above: slab_means(&above.voxels, slabs),
         shares: undercoat_shares(&guard, &slab_means(&voxels.extinction, slabs)),
+        guard_ends,
     }
 }
 

@@ -5,6 +5,7 @@ use super::patches::Patches;
 use super::shell::Slabs;
 use super::texture::Texture;
 use crate::math::{Vec2, Vec3, Vec4};
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// Angles between ray and normal for which a gain is stored, degrees.
@@ -22,7 +23,7 @@ pub struct Coat {
 }
 
 /// Where the hair of a tile grew.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sampled {
     /// On a flat toroidal square: textures repeat, and a coat's tint gives them colour and density.
     #[default]
@@ -33,7 +34,7 @@ pub enum Sampled {
 }
 
 /// Hair of a square with its mean lean removed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tile {
     /// Name of the preset it was grown from.
     pub preset: String,
@@ -54,7 +55,7 @@ pub struct Tile {
 }
 
 /// A coarser stack of a tile's hair.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Level {
     /// Its shells.
     pub shells: ShellStack,
@@ -90,9 +91,10 @@ impl Tile {
 pub const LOOK: usize = 53;
 
 /// How a tile's hair is lit.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TileLooks {
     /// Guard hair and undercoat.
+    #[serde(with = "looks")]
     pub of: [[[f32; 4]; LOOK]; 2],
     /// Hair area per volume times diameter, of guard hair and undercoat.
     pub crowding: [f32; 2],
@@ -100,10 +102,30 @@ pub struct TileLooks {
     pub undercoat_share: Vec<f32>,
 }
 
+/// Looks as one list of numbers: serde's arrays end at 32.
+mod looks {
+    use super::LOOK;
+    use serde::de::{Deserialize, Deserializer, Error};
+    use serde::ser::{Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(of: &[[[f32; 4]; LOOK]; 2], serializer: S) -> Result<S::Ok, S::Error> {
+        of.as_flattened().as_flattened().serialize(serializer)
+    }
+
+    pub fn deserialize<'d, D: Deserializer<'d>>(deserializer: D) -> Result<[[[f32; 4]; LOOK]; 2], D::Error> {
+        let numbers = Vec::<f32>::deserialize(deserializer)?;
+        if numbers.len() != 2 * LOOK * 4 {
+            return Err(D::Error::invalid_length(numbers.len(), &"the numbers of two looks"));
+        }
+        let number = |kind: usize, row: usize, i: usize| numbers[(kind * LOOK + row) * 4 + i];
+        Ok(std::array::from_fn(|kind| std::array::from_fn(|row| std::array::from_fn(|i| number(kind, row, i)))))
+    }
+}
+
 /// Shells over the opaque skin (layer 0): `layers − 1` slabs, of which that of layer i is drawn at its top.
 ///
 /// The law that gives a slab's opacity (`docs/steps/shells.md`): τ = g(θ)·[A √(1 − (ω·m)²) Δh/|cos θ| + κ], α = 1 − e^−τ.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShellStack {
     /// Layers with the skin: textures have this many array layers.
     pub layers: u32,
@@ -128,7 +150,7 @@ pub struct ShellStack {
 }
 
 /// A slab of hair seen along the skin: x along the edge (toroidal), rows from the tips (0) to the roots.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FinTexture {
     /// Texels along the edge direction and along the hair, of mip 0.
     pub size: [u32; 2],

@@ -1,9 +1,10 @@
 //! Eight-bit images, as they come from and go to files.
 
+use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
 /// Pixels in rows from the top, `channels` bytes each. Transfer function and meaning are the owner's.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Image8 {
     /// Pixels per row.
     pub width: u32,

@@ -1,6 +1,7 @@
 //! Guard hairs, drawn one by one.
 
 use crate::math::Vec3;
+use serde::Serialize;
 
 /// Where a hair grows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,7 +13,7 @@ pub struct Root {
 }
 
 /// What all hairs of one set share.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Profile {
     /// Tip radius over root radius; in between linear in arc length.
     pub taper: f32,

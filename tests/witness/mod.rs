@@ -315,6 +315,7 @@ pub fn baked(input: &str) -> Vec<u8> {
         seed: 1,
         fallback: Fallback::Shells(2),
         judge: false,
+        cache: None,
     };
     bake(&request, &mut |_| ()).expect("it bakes");
     std::fs::read(out).expect("the output")

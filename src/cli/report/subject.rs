@@ -125,6 +125,7 @@ impl Subject {
                     seed: self.seed,
                     fallback: Fallback::None,
                     judge: false,
+                    cache: None,
                 },
                 &mut |_| {},
             )?;

@@ -1,7 +1,9 @@
 //! How a stack is cut into slabs.
 
+use serde::{Deserialize, Serialize};
+
 /// Slabs over one another, from the skin on. Heights are over the stack's, 0 at the skin.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Slabs {
     /// Height of the skin, 0, and of the top of each slab.
     tops: Vec<f32>,

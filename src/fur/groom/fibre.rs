@@ -2,9 +2,11 @@
 
 use super::{Colour, Guard, Shape, Undercoat};
 use crate::data::strands::Profile;
+use crate::math::Vec3;
+use serde::Serialize;
 
 /// Guard hair or undercoat with all lengths in metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Fibre {
     /// Hairs per skin area, 1/m².
     pub density_per_m2: f32,
@@ -59,6 +61,11 @@ impl Fibre {
             },
             variation: 0.5 * colour.variation,
         }
+    }
+
+    /// The same hair without colour: it grows where and as this does.
+    pub fn colourless(&self) -> Self {
+        Self { profile: Profile { ramp: [Vec3::ZERO; 3], ..self.profile }, variation: 0.0, ..*self }
     }
 
     /// Length of the longest hair, m.
