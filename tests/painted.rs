@@ -90,7 +90,7 @@ fn above() -> Frame {
         ambient: Vec3::ONE,
         shadow_map: false,
         depths: false,
-        level: None,
+        level: Some(0),
     }
 }
 

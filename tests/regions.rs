@@ -78,7 +78,7 @@ fn view(edge_m: f32) -> Frame {
         ambient: Vec3::ONE,
         shadow_map: false,
         depths: false,
-        level: None,
+        level: Some(0),
     }
 }
 

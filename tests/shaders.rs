@@ -133,7 +133,7 @@ fn structs_lie_as_in_rust() {
             }),
         ),
         (&shell, "Item", in_rust!(Item { index, layer })),
-        (&shell, "Paint", in_rust!(PaintUniform { has_colour, has_painted })),
+        (&shell, "Paint", in_rust!(PaintUniform { has_colour, has_painted, share, fins })),
         (&fin, "FinEdge", in_rust!(FinInstance { ends, u, thickness, spacing_m })),
     ] {
         assert_eq!(in_shader(module, name), Some(rust), "{name}");

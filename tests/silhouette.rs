@@ -110,7 +110,7 @@ fn frame(camera: &Camera) -> Frame {
         ambient: Vec3::ONE,
         shadow_map: false,
         depths: false,
-        level: None,
+        level: Some(0),
     }
 }
 

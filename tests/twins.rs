@@ -66,7 +66,7 @@ pub fn oblique(direction: Vec3, edge_m: f32) -> Frame {
         ambient: Vec3::ZERO,
         shadow_map: false,
         depths: false,
-        level: None,
+        level: Some(0),
     }
 }
 

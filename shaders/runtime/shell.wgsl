@@ -334,8 +334,8 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let eye_normal = dot(to_eye, normal);
     // Less lies above what is seen of a slab than above its middle.
     let middle_area = area_above(surface.a) * present;
-    let top_area = middle_area * look.top_share;
-    let own_area = 2.0 * (middle_area - top_area);
+    let own_area = min(2.0 * (1.0 - look.top_share) * slab.slabs, 2.0) * middle_area;
+    let top_area = middle_area - 0.5 * own_area;
     var seen_depth = 0.0;
     var within = 0.5;
     var area = middle_area;

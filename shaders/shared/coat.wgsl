@@ -169,15 +169,22 @@ fn seen_at(depth: f32) -> f32 {
     return 1.0 / depth - 1.0 / (exp(min(depth, 80.0)) - 1.0);
 }
 
+// Hair area that seen_above can tell; of less it is the same.
+const LEAST_SEEN: f32 = 0.002;
+
+// Mean of what comes through a layer of this depth to each place in it.
+fn mean_clear(depth: f32) -> f32 {
+    if depth < 0.1 {
+        return 1.0 - depth * (1.0 / 2.0 - depth * (1.0 / 6.0 - depth / 24.0));
+    }
+    return (1.0 - exp(-depth)) / depth;
+}
+
 // Share of a layer's hair that lies above what is seen of it, of which the layer holds `area` per skin area; `depth` is what the eye's
-// ray meets of it. Not the mean, but what darkens by e to minus it as much as all that is seen does in the mean. Less of either than
-// LEAST_SEEN would be told by roundings.
-const LEAST_SEEN: f32 = 0.02;
+// ray meets of it. Not the mean, but what darkens by e to minus it as much as all that is seen does in the mean.
 fn seen_above(depth: f32, area: f32) -> f32 {
-    let t = max(depth, LEAST_SEEN);
     let d = max(area, LEAST_SEEN);
-    let both = t + d;
-    return -log(t / both * (1.0 - exp(-both)) / (1.0 - exp(-t))) / d;
+    return -log(mean_clear(depth + d) / mean_clear(depth)) / d;
 }
 
 // Opacity of a slab with `amount` times as much hair as one of this opacity. Hair is opaque where it is: less hair covers less of

@@ -74,7 +74,8 @@ pub fn bake_with(hair: &TileHair, recipe: &TileRecipe, told: &mut RaysTold) -> T
     let lean = leaning(recipe.lean_deg);
     let counts = std::iter::successors(Some(recipe.shells.layers as usize - 1), |&n| (n > 1).then_some(n / 2));
     let by_height = ByHeight::new(hair);
-    let cuts: Vec<Slabs> = counts.map(|count| by_height.cut(count)).collect();
+    let cut = |(level, count)| if level == 0 { Slabs::even(count) } else { by_height.cut(count) };
+    let cuts: Vec<Slabs> = counts.enumerate().map(cut).collect();
     // The textures, the fin and the truth that gains are fitted to need nothing of each other.
     let ends = told.ends.take().filter(|ends| ends.len() == cuts.len());
     let known = |level: usize| ends.as_ref().map(|ends| ends[level].clone());

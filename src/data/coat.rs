@@ -2,7 +2,7 @@
 
 use super::image::Image8;
 use super::patches::Patches;
-use super::shell::Slabs;
+use super::slabs::Slabs;
 use super::texture::Texture;
 use crate::math::{Vec2, Vec3, Vec4};
 use serde::{Deserialize, Serialize};

@@ -14,6 +14,7 @@ pub mod parting;
 pub mod patches;
 pub mod ray;
 pub mod shell;
+pub mod slabs;
 pub mod spread;
 pub mod strands;
 pub mod subject;

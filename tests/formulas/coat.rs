@@ -25,7 +25,7 @@ pub const MAIN: Source = Source {
 #import furrier::view::ray_direction
 #import furrier::coat::{Medium, Ray, frame, hair_frame, ray_in_tile, lateral, across, path_through_slab, gain, presence,
     run_through_slab, depth_of_opacity, fin_share, footprint, medium_of, root_of, filled_slab, closeness,
-    area_above, seen_at, seen_above, thinned, at_outline, nearness}
+    area_above, seen_at, seen_above, mean_clear, thinned, at_outline, nearness}
 
 @group(2) @binding(0) var<storage, read> inputs: array<vec4<f32>>;
 @group(2) @binding(1) var<storage, read_write> outputs: array<vec4<f32>>;
@@ -73,7 +73,7 @@ fn formulas(@builtin(global_invocation_id) id: vec3<u32>) {
     outputs[first + 6u] = vec4(spot.round_level, stored.extinction, stored.tangent.x, dot(ray_direction(light), normal));
     outputs[first + 7u] = vec4(f32(filled.layer), filled.slab_m, filled.slabs, closeness(chance.x, chance.y));
     outputs[first + 8u] = vec4(root.density, root.share, area_above(opacity), thinned(opacity, 2.0 * chance.y));
-    outputs[first + 9u] = vec4(seen_above(chance.x * 4.0, chance.y * 8.0), 0.0, 0.0, 0.0);
+    outputs[first + 9u] = vec4(seen_above(chance.x * 4.0, chance.y * 8.0), mean_clear(chance.x * 4.0), 0.0, 0.0);
 }
 ",
     ),
@@ -256,6 +256,7 @@ pub fn law(shared: &[Source]) -> Vec<String> {
         worst.note(i, "where a slab is seen", out[2].z, reference::seen_at(f64::from(chance.x) * 4.0) as f32);
         let [depth, area] = [f64::from(chance.x) * 4.0, f64::from(chance.y) * 8.0];
         worst.note(i, "hair above what is seen", out[9].x, reference::seen_above(depth, area) as f32);
+        worst.note(i, "what comes through in the mean", out[9].y, (-(-depth).exp_m1() / depth.max(1e-12)) as f32);
         worst.note(i, "hair area above", out[8].z / MOST_ABOVE, (1.0 - opacity(i)).powi(2));
         let thinned = reference::thinned(opacity(i).into(), f64::from(chance.y) * 2.0);
         worst.note(i, "opacity of thinned hair", out[8].w, thinned as f32);

@@ -276,7 +276,10 @@ pub fn shell_departures(asset: &Asset, coat: &Coat, bytes: &[u8], shells: usize)
             check(worn.triangles.iter().map(own).eq(theirs.triangles.iter().map(|&t| way(t))), "triangles");
             let nodes = reading.shown(mesh.index());
             check(nodes.len() == part.nodes.len(), "shells stand wherever the skin does");
-            let height = (shell as f32 + 0.5) / shells as f32;
+            // In the middle of the slabs that it holds.
+            let slabs = &coat.tiles[worn.tile].shells.slabs;
+            let [bottom, top] = [shell, shell + 1].map(|shell| slabs.tops()[shell * slabs.count() / shells]);
+            let height = 0.5 * (bottom + top);
             for (&node, &own) in nodes.iter().zip(&part.nodes) {
                 for Both { name, ours, theirs: moment } in moments.iter().filter(|m| one_target(&m.ours.weights[own])) {
                     let posed = part.posed(asset, ours, own, 1.0);

@@ -16,7 +16,6 @@ const AZIMUTHS: u32 = 4;
 pub fn shells(stack: &ShellStack, height_m: f32, count: u32) -> Vec<(f32, Image8)> {
     let slabs = stack.layers - 1;
     let count = count.clamp(1, slabs);
-    let thinnest = (0..slabs as usize).map(|slab| stack.slabs.thickness(slab)).fold(1.0, f32::min);
     let of_shell = |shell: u32| {
         let (first, last) = (shell * slabs / count + 1, (shell + 1) * slabs / count);
         let mut image = Image8::new(stack.size, stack.size, 4);
@@ -24,9 +23,8 @@ pub fn shells(stack: &ShellStack, height_m: f32, count: u32) -> Vec<(f32, Image8
             let colour = composite(stack, (first..=last).rev(), texel, height_m);
             image.pixels[4 * texel..][..4].copy_from_slice(&colour);
         }
-        // What is seen of a thick slab, which is so because no light comes to its bottom, is its top.
-        let seen = (first..=last).map(|slab| stack.slabs.thickness(slab as usize - 1).min(2.0 * thinnest)).sum::<f32>();
-        (stack.slabs.tops()[last as usize] - 0.5 * seen, image)
+        let [bottom, top] = [first as usize - 1, last as usize].map(|slab| stack.slabs.tops()[slab]);
+        (0.5 * (bottom + top), image)
     };
     (0..count).map(of_shell).collect()
 }

@@ -9,13 +9,12 @@
 pub mod guards;
 mod incidence;
 mod root;
-mod slabs;
 mod stack;
 mod texel;
 
+pub use super::slabs::Slabs;
 pub use incidence::Incidence;
 pub use root::{Filled, closeness};
-pub use slabs::Slabs;
 pub use stack::Stack;
 pub use texel::{
     HairMedium, MOST_ABOVE, Texel, above_of, above_of_transmittance, code_above, depth_of_byte, depth_of_opacity,

@@ -1,7 +1,7 @@
 //! What hair at a pixel has of the coat there, as its root and the skin's facets say.
 
-use super::Slabs;
 use super::guards::APART;
+use crate::data::slabs::Slabs;
 
 /// What of a slab of the stack hair fills that is shorter than the coat's offset: the tile is squeezed to a share of the stack, and
 /// ends there (`docs/extension/README.md`, "What is painted at the root").

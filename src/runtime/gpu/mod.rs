@@ -6,6 +6,7 @@
 //! Made once and kept: passes and tiles in a [`Renderer`], the geometry of a pose in a [`Prepared`]. A view costs its
 //! uniforms, the passes and the way back.
 
+mod bindings;
 mod constants;
 pub mod layout;
 mod measured;

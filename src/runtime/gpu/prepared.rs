@@ -1,5 +1,6 @@
 //! A pose on the device, ready to be drawn from anywhere in any light.
 
+use super::bindings::bind;
 use super::layout::ViewUniform;
 use super::pipelines::{CostPipelines, DepthPipelines};
 use super::resources::{self, GpuFur, GpuSkin, Textures};
@@ -174,7 +175,7 @@ impl<'a> Prepared<'a> {
             items.as_entire_binding(),
             wgpu::BindingResource::TextureView(&targets.edges),
         ];
-        resources::bind(gpu, &pipelines.layouts.view, &resources)
+        bind(gpu, &pipelines.layouts.view, &resources)
     }
 
     /// The finest level of a tile that any coat shows.

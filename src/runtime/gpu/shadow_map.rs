@@ -1,9 +1,9 @@
 //! The key light's shadow map on the device: drawn before each picture, read by every pass that lights something.
 
 use super::PassCost;
+use super::bindings::bind;
 use super::layout::CasterVertex;
 use super::pipelines::{CASTER, DEPTH, SHARED};
-use super::resources::bind;
 use crate::error::Result;
 use crate::gpu::Gpu;
 use crate::runtime::casters::Casters;

@@ -1,7 +1,7 @@
 //! What pictures of one size are drawn into, and the way back to the host.
 
+use super::bindings::bind;
 use super::pipelines::{COLOUR, DEPTH, EDGE, EDGE_SAMPLES, Pipelines, RESOLVED, RESOLVED_DEPTH};
-use super::resources::bind;
 use crate::error::Result;
 use crate::gpu::{Gpu, ReadBack};
 use crate::runtime::draw_list::{Frame, Picture};

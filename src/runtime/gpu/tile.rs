@@ -1,8 +1,8 @@
 //! Tiles on the device.
 
+use super::bindings::{bind, sampler, view};
 use super::layout::{LayerLook, Mip, SlabItem, TileUniform, medium_unit_per_m};
 use super::pipelines::Layouts;
-use super::resources::{bind, sampler, view};
 use crate::data::coat::{FinEdge, FinTexture, LOOK, Sampled, ShellStack, Tile};
 use crate::data::image::Image8;
 use crate::data::shell::{Slabs, signed, unorm};
