@@ -1,7 +1,7 @@
 //! Basis Universal textures in KTX2 files, as KHR_texture_basisu has them.
 
 use crate::data::image::Image8;
-use basisu::{DecodeFlags, TargetFormat, Transcoder};
+use basisu::{DecodeFlags, Error, TargetFormat, Transcoder};
 
 /// How every KTX2 file begins.
 const MAGIC: [u8; 12] = *b"\xABKTX 20\xBB\r\n\x1A\n";
@@ -27,7 +27,7 @@ pub fn size(bytes: &[u8]) -> Result<[u32; 2], String> {
 pub fn decode(bytes: &[u8]) -> Result<Image8, String> {
     let texture = open(bytes)?;
     let (width, height) = texture.base_dimensions();
-    let pixels = texture.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE).map_err(|error| format!("{error:?}"))?;
+    let pixels = texture.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE).map_err(told)?;
     if pixels.len() as u64 != 4 * u64::from(width) * u64::from(height) {
         return Err(format!("{} bytes for {width} × {height} pixels", pixels.len()));
     }
@@ -35,9 +35,16 @@ pub fn decode(bytes: &[u8]) -> Result<Image8, String> {
 }
 
 fn open(bytes: &[u8]) -> Result<Transcoder<'_>, String> {
-    let texture = Transcoder::new(bytes).map_err(|error| format!("{error:?}"))?;
+    let texture = Transcoder::new(bytes).map_err(told)?;
     if !texture.supports(TargetFormat::Rgba32) {
         return Err(format!("{:?} has no eight bits per channel", texture.source_format()));
     }
     Ok(texture)
+}
+
+fn told(error: Error) -> String {
+    match error {
+        Error::InvalidData | Error::Truncated => "it is cut, or holds no Basis Universal data".to_owned(),
+        other => format!("{other:?}"),
+    }
 }

@@ -10,10 +10,11 @@ use std::collections::BTreeSet;
 
 const NAME: &str = "KHR_draco_mesh_compression";
 
-/// Most bytes, points and triangles that one stream may decode to.
-fn limits() -> DecodeLimits {
+/// What a stream of `length` bytes may decode to: no mesh is as regular as to take less than a byte for a thousand triangles.
+fn limits(length: usize) -> DecodeLimits {
     let mut limits = DecodeLimits::default();
-    (limits.max_points, limits.max_faces, limits.max_decoded_bytes) = (1 << 26, 1 << 26, 1 << 29);
+    let most = (1024 * length as u64).min(1 << 24);
+    (limits.max_points, limits.max_faces, limits.max_decoded_bytes) = (most, most, 1 << 29);
     limits
 }
 
@@ -46,7 +47,7 @@ pub fn decode(document: &mut Document, warnings: &mut Vec<String>) -> Result<()>
         let bytes = document.view(stream.view)?.to_vec();
         let mut decoded = Mesh::new();
         MeshDecoder::new()
-            .decode(&mut DecoderBuffer::new(&bytes).with_limits(limits()), &mut decoded)
+            .decode(&mut DecoderBuffer::new(&bytes).with_limits(limits(bytes.len())), &mut decoded)
             .map_err(|error| fault(stream, &error.to_string()))?;
         fill(document, stream, &decoded, &mut filled)?;
     }

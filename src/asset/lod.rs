@@ -75,6 +75,9 @@ fn name_of(node: &At<'_>, document: &Document) -> Option<String> {
 
 /// What a name says besides its level, and the level: `Beast_LOD1` is level 1 of `Beast`.
 fn level_of(name: &str) -> Option<(String, u32)> {
+    // Blender numbers things of one name.
+    let numbered = |(_, number): &(&str, &str)| number.len() == 3 && number.chars().all(|c| c.is_ascii_digit());
+    let name = name.rsplit_once('.').filter(numbered).map_or(name, |(name, _)| name);
     let lower = name.to_ascii_lowercase();
     let found = lower.match_indices("lod").find_map(|(at, token)| {
         let before = name[..at].chars().next_back();

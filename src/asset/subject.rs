@@ -16,7 +16,7 @@ impl Asset {
     /// `hair_m` says how far hair reaches from a part's vertex, m.
     ///
     /// # Errors
-    /// Names morph weights or nodes that cannot be read. Cameras and lights that cannot be used fail when they are asked for.
+    /// Names morph weights or nodes that cannot be read, and says where all is hidden. Cameras and lights that cannot be used fail when they are asked for.
     pub fn subject(&self, metres_per_unit: f64, hair_m: impl Fn(usize, usize) -> f32) -> Result<Subject> {
         let pose = self.rest_pose()?;
         let centre_units = self.parts.first().map_or(DVec3::ZERO, |part| part.centre_units);
@@ -31,6 +31,13 @@ impl Asset {
                     subject.hair_m.push(hair_m(index, v));
                 }
             }
+        }
+        if subject.points_m.is_empty() {
+            return Err(Error::input("there is nothing to see")
+                .with_file(&self.document.name)
+                .with_field("nodes")
+                .with_found("everything is hidden by KHR_node_visibility")
+                .with_expected("a visible node with a mesh"));
         }
         let root = self.document.root();
         let nodes = root.list("nodes")?;

@@ -29,7 +29,7 @@ use crate::data::coat::{Blend, Coat, CoatPrimitive, Tile};
 use crate::error::{Error, Result};
 use crate::fur::field::Singularity;
 use crate::fur::groom::fibre::Fibre;
-use crate::fur::patch::{Parameterisation, parameterise};
+use crate::fur::patch::{Parameterisation, need_uv_set, parameterise};
 use crate::metrics::timing;
 use crate::preset::Preset;
 use serde::{Deserialize, Serialize};
@@ -144,6 +144,9 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
                 .with_found(material)
                 .with_expected(names(asset.parts.iter()).join(", ")));
         }
+    }
+    if let Method::Uv(set) = request.method {
+        need_uv_set(set, chosen.iter().map(|&i| asset.parts[i].stored.uv_sets.len()).max().unwrap_or(0))?;
     }
     let scale = units::scale(request.units, &request.preset, &asset, &chosen, request.input.starts_with("sample:"))?;
     let mut notes: Vec<String> = selection.note.into_iter().chain(scale.note.clone()).collect();
@@ -263,6 +266,13 @@ impl Task<'_> {
 /// Bakes the tiles of a preset and its regions, and puts them on each part over patches of its own.
 fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: &mut Steps<'_>) -> Result<CoatedParts> {
     let (others, request) = (regions::presets(task.preset)?, task.request);
+    // Maps and regions that cannot be read are told before the long work.
+    let all = steps.run("groom", || task.groom(task.preset))?;
+    // An asset's own coordinates are every part's by itself; passages between presets need all parts.
+    let alone = matches!(request.method, Method::Uv(_)) && others.is_empty();
+    let sets: Vec<&[usize]> = if alone { task.parts.chunks(1).collect() } else { vec![task.parts] };
+    let cut = |parts: &[usize]| all.cut(|part| parts.contains(&(part as usize)));
+    let shares = if others.is_empty() { Vec::new() } else { regions::shares(task, &cut(task.parts))? };
     let (mut tiles, mut accuracy) = (Vec::new(), Vec::new());
     for preset in std::iter::once(task.preset).chain(&others) {
         let (tile, rows) = tile_of(task, preset, steps)?;
@@ -270,12 +280,8 @@ fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: 
         accuracy.extend(rows);
     }
     let (mut carried, mut warnings, mut laid, mut notes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let all = steps.run("groom", || task.groom(task.preset))?;
-    // An asset's own coordinates are every part's by itself; passages between presets need all parts.
-    let alone = matches!(request.method, Method::Uv(_)) && others.is_empty();
-    let sets: Vec<&[usize]> = if alone { task.parts.chunks(1).collect() } else { vec![task.parts] };
     for parts in sets {
-        let groomed = steps.run("groom", || all.cut(|part| parts.contains(&(part as usize))));
+        let groomed = steps.run("groom", || cut(parts));
         let (direction, edge_m) = (&groomed.fields.direction, tiles[0].edge_m);
         let start = Instant::now();
         let patches = steps.run("patches", || parameterise(groomed.mesh(), direction, edge_m, method(request.seed)))?;
@@ -290,7 +296,7 @@ fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: 
         let worn = if others.is_empty() {
             steps.run("coat primitives", || task.coat_primitives(&groomed, &patches, &tiles[0]))
         } else {
-            regions::wear_all(task, parts, &groomed, &patches, (&others, &tiles), steps)?
+            regions::wear_all(task, &groomed, &patches, (&others, &tiles, &shares), steps)?
         };
         notes.extend(finest::notes(&groomed, &task.materials(parts), &worn, request.method, None));
         carried.extend(worn);

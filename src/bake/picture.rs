@@ -4,7 +4,7 @@ use super::skin::{self, Groomed, Role};
 use super::units::{self, Units};
 use super::{unfollowed, weld};
 use crate::asset::strands::Export;
-use crate::asset::{self, Asset, Pose, Reading};
+use crate::asset::{self, Asset, Part, Pose, Reading};
 use crate::coat::hair::TileHair;
 use crate::coat::primitive::{is_furred, offset_over_height};
 use crate::data::camera::Camera;
@@ -217,17 +217,20 @@ fn reaches_m(asset: &Asset, groomed: &Groomed, height_m: f32) -> Vec<Vec<f32>> {
     reaches_m
 }
 
-/// The skin as the scene shows it: in a pose, and once more for every further node of a mesh.
+/// The skin as the scene shows it: in a pose, once more for every further node of a mesh, and without what is hidden.
 fn shown(asset: &Asset, rest: Groomed, pose: Option<&Pose>, metres_per_unit: f64) -> Result<Groomed> {
-    let most = asset.parts.iter().map(|part| part.nodes.len()).max().unwrap_or(1);
+    let seen = |part: &Part| part.nodes.iter().copied().filter(|&node| !asset.scene.hidden[node]).collect();
+    let nodes: Vec<Vec<usize>> = asset.parts.iter().map(seen).collect();
+    let most = nodes.iter().map(Vec::len).max().unwrap_or(0);
     let at_rest = asset.rest_pose()?;
+    let as_it_is = asset.parts.iter().zip(&nodes).all(|(part, nodes)| nodes.first() == part.nodes.first());
     let mut all: Option<Groomed> = None;
     for number in 0..most {
-        let node = |part: usize| asset.parts[part].nodes[number];
-        let here = |part: u32| asset.parts[part as usize].nodes.len() > number;
+        let node = |part: usize| nodes[part][number];
+        let here = |part: u32| nodes[part as usize].len() > number;
         let next = match (number, pose) {
-            (0, None) => rest.clone(),
-            (0, Some(pose)) => rest.pose(asset, pose, node, metres_per_unit)?,
+            (0, None) if as_it_is => rest.clone(),
+            (0, Some(pose)) if as_it_is => rest.pose(asset, pose, node, metres_per_unit)?,
             (_, pose) => rest.cut(here).pose(asset, pose.unwrap_or(&at_rest), node, metres_per_unit)?,
         };
         match &mut all {

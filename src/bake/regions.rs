@@ -41,23 +41,21 @@ pub(super) fn presets(preset: &Preset) -> Result<Vec<Preset>> {
 }
 
 /// What parts carry: one coat primitive for each tile that some triangle of a part carries alone, and one for each pair that share
-/// triangles. `tiles` are the task's own and those of `presets`.
+/// triangles. `tiles` are the task's own and those of `presets`, `shares` what [`shares`] gives.
 pub(super) fn wear_all(
     task: &Task<'_>,
-    parts: &[usize],
     own: &Groomed,
     patches: &Patches,
-    (presets, tiles): (&[Preset], &[Tile]),
+    (presets, tiles, shares): (&[Preset], &[Tile], &[Vec<f32>]),
     steps: &mut Steps<'_>,
 ) -> Result<Vec<(usize, CoatPrimitive)>> {
-    let shares = shares(task, own)?;
     let mut fields = vec![own.fields.clone()];
     for preset in presets {
         let groomed = steps.run("groom", || task.groom(preset))?;
-        fields.push(groomed.cut(|part| parts.contains(&(part as usize))).fields);
+        fields.push(groomed.cut(|part| task.parts.contains(&(part as usize))).fields);
     }
     let axes = axes(own.mesh(), &own.fields.direction, patches);
-    let mixed = Mixed::new(own.mesh(), &fields, tiles, &shares);
+    let mixed = Mixed::new(own.mesh(), &fields, tiles, shares);
     // Triangles by their part and what they carry.
     let mut groups: BTreeMap<(u32, usize, Option<usize>), Vec<usize>> = BTreeMap::new();
     for (t, triangle) in own.mesh().triangles.iter().enumerate() {
@@ -93,7 +91,7 @@ pub(super) fn wear_all(
 }
 
 /// Per vertex, the share of the preset's own tile and of each region's; they sum to 1.
-fn shares(task: &Task<'_>, own: &Groomed) -> Result<Vec<Vec<f32>>> {
+pub(super) fn shares(task: &Task<'_>, own: &Groomed) -> Result<Vec<Vec<f32>>> {
     let mesh = own.mesh();
     let mut shares = vec![vec![1.0]; mesh.positions_m.len()];
     for (i, region) in task.preset.regions.iter().enumerate() {

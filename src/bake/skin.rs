@@ -248,7 +248,16 @@ fn paint(
                 let image = match images.entry(texture.image) {
                     Entry::Occupied(known) => known.get().clone(),
                     Entry::Vacant(slot) => {
-                        slot.insert(asset.document.decode_image(texture.image)?.map(Arc::new)).clone()
+                        let decoded = match asset.document.decode_image(texture.image) {
+                            // What has no fur is no reason to stop.
+                            Err(error) if role == Role::Bare => {
+                                let place = error.field.as_deref().unwrap_or_default();
+                                notes.push(format!("{}: {place}; it is left out", error.what));
+                                None
+                            }
+                            decoded => decoded?,
+                        };
+                        slot.insert(decoded.map(Arc::new)).clone()
                     }
                 };
                 image.map(|image| (texture, image))

@@ -72,6 +72,7 @@ fn compressed(name: &str, speed: i32) -> Document {
         attribute.buffer_mut().data_mut()[..bytes.len()].copy_from_slice(&bytes);
         ids.insert(key.into(), json!(mesh.add_attribute(attribute)));
     }
+    mesh.set_num_faces(indices.len() / 3);
     mesh.set_faces_from_flat_indices(&indices);
     let mut encoder = MeshEncoder::new();
     encoder.set_mesh(mesh);

@@ -80,9 +80,9 @@ pub fn glb(document: &Document, folder: &Path, name: &str) -> PathBuf {
     put(folder, name, document.to_glb().expect("a GLB"))
 }
 
-/// What baking says, with little hair.
-pub fn bake(input: &Path, out: &Path) -> Result<Baked, Error> {
-    let request = Request {
+/// A bake with little hair.
+pub fn request(input: &Path, out: &Path) -> Request {
+    Request {
         input: input.to_string_lossy().into_owned(),
         out: out.to_owned(),
         preset: thin(&[]),
@@ -93,6 +93,10 @@ pub fn bake(input: &Path, out: &Path) -> Result<Baked, Error> {
         seed: 1,
         fallback: Fallback::Shells(2),
         judge: false,
-    };
-    furrier::bake::bake(&request, &mut |_| ())
+    }
+}
+
+/// What baking says, with little hair.
+pub fn bake(input: &Path, out: &Path) -> Result<Baked, Error> {
+    furrier::bake::bake(&request(input, out), &mut |_| ())
 }

@@ -1,8 +1,11 @@
 //! What is wrong with a file and stops nothing, and what stops before the work.
 
-use super::{bake, glb, load, plane, png, put, says};
+use super::{bake, glb, load, plane, png, put, request, says};
+use crate::one_skin::thin;
 use furrier::asset::{self, Document};
+use furrier::bake::{Method, Request};
 use furrier::error::Kind;
+use furrier::preset::Preset;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -153,4 +156,28 @@ fn outputs_are_checked_before_the_work() {
     let error = bake(&path, &folder.path().join("out.gltf")).unwrap_err();
     assert_eq!(error.kind, Kind::Output, "{error}");
     assert_eq!(std::fs::read(folder.path().join("out.bin")).unwrap(), document.binary);
+}
+
+#[test]
+fn options_that_cannot_be_met_are_told_before_the_hair_grows() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = glb(&fur(), folder.path(), "in.glb");
+    put(folder.path(), "region.toml", "size_m = 0.3\n[guard]\nlength = { mm = 5 }\n");
+    let region = |place: &str| {
+        let text = format!("size_m = 0.3\n[[regions]]\npreset = \"region.toml\"\n{place}\n");
+        Preset::load(&put(folder.path(), "own.toml", text).to_string_lossy()).unwrap()
+    };
+    let map = thin(&[&format!("maps.length={:?}", folder.path().join("none.png").to_string_lossy())]);
+    for (what, preset, method) in [
+        ("a UV set", thin(&[]), Method::Uv(3)),
+        ("a map", map, Method::Lapped),
+        ("a region's material", region("material = \"Nobody\""), Method::Lapped),
+        ("a region's map", region("map = \"none.png\""), Method::Lapped),
+        ("a region's place", region(""), Method::Lapped),
+    ] {
+        let request = Request { preset, method, ..request(&path, &folder.path().join("out.glb")) };
+        let mut steps = Vec::new();
+        let error = furrier::bake::bake(&request, &mut |step| steps.push(step)).unwrap_err();
+        assert!(!steps.contains(&"grow"), "{what}: {steps:?}: {error}");
+    }
 }

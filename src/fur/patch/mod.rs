@@ -21,6 +21,7 @@ use crate::math::Vec3;
 pub use atlas::{fit as fit_atlas, xatlas_alone};
 pub use measure::{of as measure, seam_edges, singular_values};
 pub use seams::{PIXEL, SeamPoint, WINDOWS, compare_seams};
+pub use uv::need as need_uv_set;
 
 /// Where the texture coordinates come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

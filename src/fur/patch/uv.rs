@@ -33,16 +33,28 @@ fn sound_share(mesh: &Mesh, faces: &[Face], set: &[Vec2]) -> f64 {
     if all > 0.0 { sound / all } else { 0.0 }
 }
 
+/// What to try where a UV set cannot be used.
+const HINT: &str = "use `parameterisation` atlas, or another `uv set`";
+
+/// Fails where set `set` is none of `sets`.
+///
+/// # Errors
+/// Names the set.
+pub fn need(set: usize, sets: usize) -> Result<()> {
+    if set < sets {
+        return Ok(());
+    }
+    Err(Error::input("the mesh lacks the UV set asked for")
+        .with_field(format!("TEXCOORD_{set}"))
+        .with_found(format!("{sets} sets"))
+        .with_expected("a set of that number")
+        .with_hint(HINT))
+}
+
 /// See [`super::parameterise`].
 pub(super) fn parameterise(mesh: &Mesh, direction: &[Vec3], tile_edge_m: f32, set: usize) -> Result<Patches> {
-    const HINT: &str = "use `parameterisation` atlas, or another `uv set`";
-    let Some(own) = mesh.uv_sets.get(set) else {
-        return Err(Error::input("the mesh lacks the UV set asked for")
-            .with_field(format!("TEXCOORD_{set}"))
-            .with_found(format!("{} sets", mesh.uv_sets.len()))
-            .with_expected("a set of that number")
-            .with_hint(HINT));
-    };
+    need(set, mesh.uv_sets.len())?;
+    let own = &mesh.uv_sets[set];
     let faces = Face::all(mesh);
     let sound = sound_share(mesh, &faces, own);
     if sound < USABLE_SHARE {
