@@ -27,7 +27,7 @@ pub fn bake_entry(
     create(output.parent().unwrap_or(Path::new("")))?;
     let records = plan.records();
     let recipe = &plan.recipes[entry.recipe];
-    // The cache of a bake's stages is handed over here.
+    // All that a bake is given, it is given here.
     let request = recipe.request(&input.to_string_lossy(), &output, false);
     for _ in 0..TRIES {
         let sources = Sources::read(&input)?;

@@ -6,7 +6,6 @@
 //! to the byte; they are whole or absent, and a run that was killed goes on where it was.
 
 pub mod content;
-pub mod emit;
 pub mod estimate;
 pub mod event;
 pub mod fragments;

@@ -119,7 +119,7 @@ impl Plan {
                 .with_file(path)
                 .with_field(format!("line {line}"))
                 .with_found(found)
-                .with_hint("make it again: furrier batch plan LIBRARY -o PLAN.jsonl")
+                .with_hint("make it again with `furrier batch plan`")
         };
         let mut lines = text.lines();
         let header: Header =

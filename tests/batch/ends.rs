@@ -46,8 +46,19 @@ fn a_broken_asset_is_named_and_the_rest_is_baked() {
     assert_eq!(faults, 2, "{events:?}");
     let table = said(&batch(folder.path(), &[]).output().unwrap());
     assert!(table.contains("broken.glb: ") && table.contains("no<faces>.obj: the OBJ has no faces"), "{table}");
-    let (code, value) = json(&mut batch(folder.path(), &["--fail-fast", "--set", "guard.taper=0.5", "--threads", "1"]));
-    assert_eq!((code, &value["baked"], &value["not_run"]), (6, &json!(0), &json!(3)), "{value}");
+}
+
+#[test]
+fn the_first_failure_is_the_last_where_that_is_asked_for() {
+    let folder = triangles(5);
+    // It is begun first because it is the largest, and fails at its end.
+    let faces = "f 1 2 3\n".repeat(5000);
+    std::fs::write(folder.path().join("large.obj"), format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{faces}f 1 2 9\n")).unwrap();
+    let (code, value) = json(&mut batch(folder.path(), &["--fail-fast"]));
+    assert_eq!((code, value["failed"].as_array().unwrap().len()), (6, 1), "{value}");
+    assert!(value["not_run"].as_u64().unwrap() >= 3, "{value}");
+    let (code, value) = json(&mut batch(folder.path(), &[]));
+    assert_eq!((code, &value["not_run"], value["failed"].as_array().unwrap().len()), (6, &json!(0), 1), "{value}");
 }
 
 #[test]

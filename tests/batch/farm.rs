@@ -68,6 +68,8 @@ fn the_openjd_template_says_what_is_run() {
     assert_eq!((&items["type"], &items["range"]), (&Value::from("CHUNK[INT]"), &Value::from("0-2")));
     assert_eq!(items["chunks"]["defaultTaskCount"], 2);
     assert_eq!(job["extensions"][0], "TASK_CHUNKING");
+    // Relative to the template, as the specification has it.
+    assert_eq!(job["parameterDefinitions"][0]["default"], "plan.jsonl");
     assert_eq!(job["steps"][1]["dependencies"][0]["dependsOn"], "Bake");
     let mut command = furrier(&["batch", "run"]);
     let lines = command.arg(&plan).args(["--items", "0-2", "--progress", "openjd"]).output().unwrap().stdout;

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// The file's text.
-pub const TEXT: &str = r#"# What is baked in this folder, and how: `furrier batch .` does it, `furrier batch . --dry-run` says what it would do.
+pub const TEXT: &str = r#"# What is baked in this folder, and how. `furrier batch .` does it.
 
 # Holds for all files unless a rule says otherwise. Every key may be left out.
 [defaults]

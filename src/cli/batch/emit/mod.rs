@@ -1,13 +1,17 @@
-//! `furrier batch emit`.
+//! `furrier batch emit`: a plan as a job of a farm's own engine.
+
+mod openjd;
+mod slurm;
 
 use crate::asset::write;
-use crate::batch::emit::{Cut, openjd, slurm};
 use crate::batch::plan::Plan;
 use crate::cli::console::Console;
 use crate::cli::output;
 use crate::error::{Error, Result};
 use clap::{Args, ValueEnum};
+use openjd::openjd;
 use serde_json::json;
+use slurm::slurm;
 use std::path::{Path, PathBuf};
 
 /// Write a plan as a job of a farm's engine
@@ -56,10 +60,17 @@ impl Emit {
         let plan = Plan::read(&self.plan)?;
         let seconds = plan.entries.iter().filter_map(|entry| entry.cost).map(|cost| cost.seconds).sum();
         let cut = Cut::new(plan.entries.len(), seconds, self.chunk.map(|n| n as usize));
-        let path = std::path::absolute(&self.plan)
-            .map_err(|error| Error::input("the plan's path cannot be used").with_file(&self.plan).with_found(error))?;
+        let path = absolute(&self.plan)?;
         match self.engine {
-            EngineName::Openjd => output::json(&self.output, &openjd(&path, cut))?,
+            EngineName::Openjd => {
+                let job = absolute(&self.output)?;
+                let beside = job.parent().and_then(|folder| path.strip_prefix(folder).ok());
+                if beside.is_none() {
+                    console
+                        .note("the plan lies elsewhere than the template, so the job must be given it: parameter Plan");
+                }
+                output::json(&self.output, &openjd(&path, beside, cut))?;
+            }
             EngineName::Slurm => {
                 let at_once = self.at_once.map(|n| n as usize);
                 let text = slurm(&path, Path::new("furrier"), cut, at_once, usize::from(self.threads));
@@ -72,3 +83,30 @@ impl Emit {
         })
     }
 }
+
+fn absolute(path: &Path) -> Result<PathBuf> {
+    std::path::absolute(path).map_err(|error| Error::input("a path cannot be used").with_file(path).with_found(error))
+}
+
+/// How a plan is cut.
+#[derive(Clone, Copy, Debug)]
+pub struct Cut {
+    /// Items of the plan.
+    pub items: usize,
+    /// Items that one machine takes at once.
+    pub chunk: usize,
+    /// What a chunk costs on one thread, s.
+    pub chunk_seconds: f64,
+}
+
+impl Cut {
+    /// Of a plan whose items cost so much together; about two minutes each where nothing is said.
+    pub fn new(items: usize, seconds: f64, chunk: Option<usize>) -> Self {
+        let each = seconds / items.max(1) as f64;
+        let chunk = chunk.unwrap_or(((CHUNK_S / each.max(1e-3)) as usize).clamp(1, 1000));
+        Self { items, chunk, chunk_seconds: each * chunk as f64 }
+    }
+}
+
+/// What a chunk costs where nothing is said, s: far more than a process needs to start, far less than one likes to lose.
+const CHUNK_S: f64 = 120.0;
