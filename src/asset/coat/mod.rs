@@ -11,7 +11,8 @@ mod write;
 pub use fallback::Fallback;
 pub use flatten::shells as flatten_shells;
 pub use read::{coat_of, read_coat};
-pub use write::{refuse_second, with_coat, write_coat};
+pub use textures::Packed;
+pub use write::{refuse_second, with_coat, write_coat, write_packed};
 
 pub use super::extension::NAME;
 

@@ -8,25 +8,55 @@ use crate::data::coat::{FinTexture, GAIN_ANGLES_DEG, LOOK, Sampled, ShellStack, 
 use crate::data::image::Image8;
 use crate::error::Result;
 use crate::math::Vec2;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+/// A tile's textures as files hold them, each a KTX2 file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Packed {
+    #[serde(with = "serde_bytes")]
+    albedo: Vec<u8>,
+    #[serde(with = "serde_bytes")]
+    medium: Vec<u8>,
+    #[serde(with = "serde_bytes")]
+    ends: Vec<u8>,
+    #[serde(with = "serde_bytes")]
+    fin_albedo: Vec<u8>,
+    #[serde(with = "serde_bytes")]
+    fin_tangent: Vec<u8>,
+}
+
+impl Packed {
+    /// Of a tile: most of the work of writing a coat.
+    ///
+    /// # Errors
+    /// When its mips or layers do not fit together.
+    pub fn new(tile: &Tile) -> Result<Self> {
+        let array = |images: &[Vec<Image8>], format| {
+            let levels: Vec<Vec<&Image8>> = images.iter().map(|level| level.iter().collect()).collect();
+            ktx2::encode(&levels, format, true)
+        };
+        let single = |images: &[Image8], format| {
+            let levels: Vec<Vec<&Image8>> = images.iter().map(|image| vec![image]).collect();
+            ktx2::encode(&levels, format, false)
+        };
+        let (shells, fin) = (&tile.shells, &tile.fin);
+        Ok(Self {
+            albedo: array(&shells.albedo, Format::Rgba8Srgb)?,
+            medium: array(&shells.medium, Format::Rgba8)?,
+            ends: array(&shells.ends, Format::R8)?,
+            fin_albedo: single(&fin.albedo, Format::Rgba8Srgb)?,
+            fin_tangent: single(&fin.tangent, Format::Rgba8)?,
+        })
+    }
+}
+
 /// Appends a tile's textures and gives its JSON.
-pub fn write(document: &mut Document, tile: &Tile) -> Result<Value> {
+pub fn write(document: &mut Document, tile: &Tile, packed: &Packed) -> Value {
     let (shells, fin) = (&tile.shells, &tile.fin);
-    let mut array = |images: &[Vec<Image8>], format| -> Result<usize> {
-        let levels: Vec<Vec<&Image8>> = images.iter().map(|level| level.iter().collect()).collect();
-        Ok(document.push_view(&ktx2::encode(&levels, format, true)?, None))
-    };
-    let (albedo, medium, ends) = (
-        array(&shells.albedo, Format::Rgba8Srgb)?,
-        array(&shells.medium, Format::Rgba8)?,
-        array(&shells.ends, Format::R8)?,
-    );
-    let mut single = |images: &[Image8], format| -> Result<usize> {
-        let levels: Vec<Vec<&Image8>> = images.iter().map(|image| vec![image]).collect();
-        Ok(document.push_view(&ktx2::encode(&levels, format, false)?, None))
-    };
-    let (fin_albedo, fin_tangent) = (single(&fin.albedo, Format::Rgba8Srgb)?, single(&fin.tangent, Format::Rgba8)?);
+    let mut view = |bytes: &[u8]| document.push_view(bytes, None);
+    let (albedo, medium, ends) = (view(&packed.albedo), view(&packed.medium), view(&packed.ends));
+    let (fin_albedo, fin_tangent) = (view(&packed.fin_albedo), view(&packed.fin_tangent));
     let mut value = json!({
         "preset": tile.preset,
         "edge": f64::from(tile.edge_m),
@@ -62,7 +92,7 @@ pub fn write(document: &mut Document, tile: &Tile) -> Result<Value> {
             "undercoatShare": numbers(&looks.undercoat_share),
         });
     }
-    Ok(value)
+    value
 }
 
 /// Reads how the hair of a tile with so many layers is lit.

@@ -3,7 +3,8 @@
 use super::fallback::{self, Fallback};
 use super::parts::{check, part_of, set_extension};
 use super::pool::pools;
-use super::{NAME, VERSION, textures};
+use super::textures::{self, Packed};
+use super::{NAME, VERSION};
 use crate::asset::document::Document;
 use crate::asset::encode::{Use, numbers};
 use crate::asset::image::media_type;
@@ -20,6 +21,20 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// When the coat does not fit the asset, or the output cannot be written; then no output is left behind.
 pub fn write_coat(asset: &Asset, coat: &Coat, fallback: Fallback, out: &Path) -> Result<Vec<String>> {
+    write_packed(asset, coat, &packed(coat)?, fallback, out)
+}
+
+/// The same with the textures of the coat's tiles, which are packed already.
+///
+/// # Errors
+/// As [`write_coat`].
+pub fn write_packed(
+    asset: &Asset,
+    coat: &Coat,
+    textures: &[Packed],
+    fallback: Fallback,
+    out: &Path,
+) -> Result<Vec<String>> {
     let extension = out.extension().map(|e| e.to_string_lossy().to_lowercase());
     let text = match extension.as_deref() {
         Some("glb") => false,
@@ -32,7 +47,7 @@ pub fn write_coat(asset: &Asset, coat: &Coat, fallback: Fallback, out: &Path) ->
         }
     };
     write::check_target(out, &asset.document.files)?;
-    let mut document = with_coat(asset, coat, fallback)?;
+    let mut document = with_packed(asset, coat, textures, fallback)?;
     let beside = text && same_folder(out, asset.document.folder.as_deref());
     let notes = if beside { Vec::new() } else { take_images_along(&mut document)? };
     if !text {
@@ -118,11 +133,19 @@ pub fn refuse_second(asset: &Asset) -> Result<()> {
 /// When the asset has a coat already, or the coat does not fit it.
 pub fn with_coat(asset: &Asset, coat: &Coat, fallback: Fallback) -> Result<Document> {
     refuse_second(asset)?;
+    with_packed(asset, coat, &packed(coat)?, fallback)
+}
+
+fn packed(coat: &Coat) -> Result<Vec<Packed>> {
+    coat.tiles.iter().map(Packed::new).collect()
+}
+
+/// `textures` are those of the coat's tiles.
+fn with_packed(asset: &Asset, coat: &Coat, textures: &[Packed], fallback: Fallback) -> Result<Document> {
+    refuse_second(asset)?;
     let mut document = asset.document.clone();
-    let mut tiles = Vec::new();
-    for tile in &coat.tiles {
-        tiles.push(textures::write(&mut document, tile)?);
-    }
+    let tiles: Vec<Value> =
+        (coat.tiles.iter().zip(textures)).map(|(tile, packed)| textures::write(&mut document, tile, packed)).collect();
     for primitive in &coat.primitives {
         check(primitive, part_of(asset, primitive)?, &coat.tiles)?;
     }
