@@ -30,19 +30,28 @@ pub(super) fn coat_parts(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps
     let recipe = recipe(task.preset, [&fibres[0], &fibres[1]])?;
     let texels = texels.unwrap_or_else(|| (TEXELS.0 * recipe.shells.texture_size).min(TEXELS.1));
     let tile_m = recipe.shells.tile_mm * 1e-3;
-    let all = steps.run("groom", || task.groom(task.preset))?;
+    let all = task.groom(task.preset, steps)?;
     let groomed = steps.run("groom", || all.cut(|part| task.parts.contains(&(part as usize))));
     let (mesh, fields) = (groomed.mesh(), &groomed.fields);
     let method = Parameterisation::Atlas { texels_per_tile: recipe.shells.texture_size, padding_texels: PADDING };
     let start = Instant::now();
-    let mut patches = vec![steps.run("patches", || parameterise(mesh, &fields.direction, tile_m, method))?];
+    let (patches, square) = steps.kept("patches", &(mesh, &fields.direction, tile_m, method, texels), |steps| {
+        steps.run("patches", || {
+            let mut patches = [parameterise(mesh, &fields.direction, tile_m, method)?];
+            let square = fit_atlas(&mut patches, tile_m, texels, PADDING)?;
+            let [patches] = patches;
+            Ok((patches, square))
+        })
+    })?;
+    let patches = &patches;
     let ms = start.elapsed().as_secs_f64() * 1e3;
-    let warnings = groomed.notes.iter().chain(&patches[0].stats.warnings).cloned().collect();
-    let square = steps.run("patches", || fit_atlas(&mut patches, tile_m, texels, PADDING))?;
-    let patches = &patches[0];
-    let skin = atlas::AtlasSkin { mesh, fields, patches, seed: task.request.seed };
-    let tile =
-        steps.run("atlas", || atlas::bake(&[skin], &square, [&fibres[0], &fibres[1]], &recipe, task.request.seed));
+    let warnings = groomed.notes.iter().chain(&patches.stats.warnings).cloned().collect();
+    let seed = task.request.seed;
+    let skin = atlas::AtlasSkin { mesh, fields, patches, seed };
+    let made_from = (mesh, fields, patches, &square, &fibres, &recipe, seed);
+    let tile = steps.kept("atlas", &made_from, |steps| {
+        steps.run("atlas", || Ok(atlas::bake(&[skin], &square, [&fibres[0], &fibres[1]], &recipe, seed)))
+    })?;
     let carried = steps.run("coat primitives", || task.coat_primitives(&groomed, patches, &tile));
     // Charts were measured in tiles; the square has its own texels.
     let texels_per_tile = f64::from(tile_m) * f64::from(texels) / f64::from(square.edge_m);
@@ -52,14 +61,16 @@ pub(super) fn coat_parts(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps
         measures: Measures::new(&patches.stats, texels_per_tile, None),
         ms,
     };
-    let judged = task.request.judge.then(|| {
+    let judge = || {
         let furred = |t: usize| mesh.triangles[t].iter().all(|&v| fields.length[v as usize] > 0.0);
         let at = judge::places(mesh, PLACES, skin.seed, furred);
         let carried =
             judge::CoatedSkin { mesh, fields, patches, tile: &tile, hair: [&fibres[0], &fibres[1]], seed: skin.seed };
-        steps.run("judge", || judge::surface_tables(&carried, &[at]))
-    });
-    let accuracy = judged.into_iter().flatten().collect();
+        Ok(judge::surface_tables(&carried, &[at]))
+    };
+    let judged =
+        task.request.judge.then(|| steps.kept("judge", &(made_from, PLACES), |steps| steps.run("judge", judge)));
+    let accuracy = judged.transpose()?.unwrap_or_default();
     let note = format!(
         "the atlas of {} has {texels}\u{b2} texels of {:.2} mm; `texture size` N changes that",
         task.preset.name,

@@ -7,7 +7,7 @@ use crate::data::maps::Maps;
 use crate::data::mesh::Mesh;
 use crate::data::parting::Parting;
 use crate::error::Result;
-use crate::fur::field::{DirectionField, FieldSource, Whorl, directions};
+use crate::fur::field::{DirectionField, FieldSource, Whorl};
 use crate::fur::groom::maps::comb_directions;
 use crate::fur::groom::{self, Comb, Groom, Place};
 use crate::math::{DVec3, Vec3};
@@ -15,11 +15,12 @@ use crate::math::{DVec3, Vec3};
 /// Share of gravity in a tailward comb.
 const SAG: f32 = 0.3;
 
-/// The comb of `mesh`, all parts of `asset`; zero where hair stands upright. What should be said of whorls, strokes and
-/// partings that miss the asset is added to `notes`.
+/// The comb of `mesh`, all parts of `asset`, as `directions` ([`crate::fur::field::directions`], or what kept its results)
+/// makes it of the sources; zero where hair stands upright. What should be said of whorls, strokes and partings that miss the
+/// asset is added to `notes`.
 ///
 /// # Errors
-/// As [`directions`].
+/// As `directions`.
 pub fn comb(
     asset: &Asset,
     mesh: &Mesh,
@@ -27,6 +28,7 @@ pub fn comb(
     maps: &Maps,
     scale: &Scale,
     notes: &mut Vec<String>,
+    directions: impl FnOnce(&Mesh, &[FieldSource]) -> Result<DirectionField>,
 ) -> Result<DirectionField> {
     let mut sources = Vec::new();
     if let (Some(map), Some(uv)) = (&maps.comb, mesh.uv_sets.first()) {

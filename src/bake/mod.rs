@@ -17,7 +17,7 @@ pub mod units;
 mod wear;
 mod weld;
 
-use crate::asset::coat::{Fallback, check_output, refuse_second, write_coat};
+use crate::asset::coat::{Fallback, Packed, check_output, refuse_second, write_packed};
 use crate::asset::{self, Asset, Part, Reading};
 use crate::cache::Store;
 use crate::coat::axes::axes;
@@ -26,8 +26,9 @@ use crate::coat::measures::Measures;
 use crate::coat::seams::{WINDOWS, before_after};
 use crate::coat::summary::draw_calls_note;
 use crate::data::coat::{Blend, Coat, CoatPrimitive, Tile};
+use crate::data::mesh::Mesh;
 use crate::error::{Error, Result};
-use crate::fur::field::Singularity;
+use crate::fur::field::{FieldSource, Singularity, directions};
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::patch::{Parameterisation, need_uv_set, parameterise};
 use crate::metrics::timing;
@@ -207,7 +208,9 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
     }
     carried.sort_by_key(|(index, _)| *index);
     coat.primitives.extend(carried.into_iter().map(|(_, primitive)| primitive));
-    notes.extend(steps.run("write", || write_coat(&asset, &coat, request.fallback, &request.out))?);
+    let pack = |tile: &Tile| steps.kept("textures", tile, |steps| steps.run("textures", || Packed::new(tile)));
+    let textures = coat.tiles.iter().map(pack).collect::<Result<Vec<_>>>()?;
+    notes.extend(steps.run("write", || write_packed(&asset, &coat, &textures, request.fallback, &request.out))?);
     notes.extend(draw_calls_note(&coat));
     let (times, cached, cache_warnings) = steps.done();
     warnings.extend(cache_warnings);
@@ -252,9 +255,14 @@ impl Task<'_> {
     }
 
     /// The skin with this preset's fields, all of it: what has no hair is part of the surface.
-    fn groom(&self, preset: &Preset) -> Result<Groomed> {
+    fn groom(&self, preset: &Preset, steps: &mut Steps<'_>) -> Result<Groomed> {
         let role = |part: usize| if self.parts.contains(&part) { Role::Furred } else { Role::Aside };
-        skin::groom(self.asset, self.skin, role, preset, self.scale)
+        steps.around("groom", |steps| {
+            let comb = |mesh: &Mesh, sources: &[FieldSource]| {
+                steps.kept("comb", &(mesh, sources), |_| directions(mesh, sources))
+            };
+            skin::groom(self.asset, self.skin, role, preset, self.scale, comb)
+        })
     }
 
     /// What some of the task's parts are called.
@@ -267,7 +275,7 @@ impl Task<'_> {
 fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: &mut Steps<'_>) -> Result<CoatedParts> {
     let (others, request) = (regions::presets(task.preset)?, task.request);
     // Maps and regions that cannot be read are told before the long work.
-    let all = steps.run("groom", || task.groom(task.preset))?;
+    let all = task.groom(task.preset, steps)?;
     // An asset's own coordinates are every part's by itself; passages between presets need all parts.
     let alone = matches!(request.method, Method::Uv(_)) && others.is_empty();
     let sets: Vec<&[usize]> = if alone { task.parts.chunks(1).collect() } else { vec![task.parts] };
@@ -284,15 +292,22 @@ fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: 
         let groomed = steps.run("groom", || cut(parts));
         let (direction, edge_m) = (&groomed.fields.direction, tiles[0].edge_m);
         let start = Instant::now();
-        let patches = steps.run("patches", || parameterise(groomed.mesh(), direction, edge_m, method(request.seed)))?;
+        let (mesh, method) = (groomed.mesh(), method(request.seed));
+        let patches = steps.kept("patches", &(mesh, direction, edge_m, method), |steps| {
+            steps.run("patches", || parameterise(mesh, direction, edge_m, method))
+        })?;
         let ms = start.elapsed().as_secs_f64() * 1e3;
         warnings.extend(groomed.notes.iter().chain(&patches.stats.warnings).cloned());
-        let seams = request.judge.then(|| {
-            steps.run("judge seams", || {
-                let axes = axes(groomed.mesh(), &groomed.fields.direction, &patches);
-                before_after(groomed.mesh(), &groomed.offsets(), &axes, &patches, &tiles[0], WINDOWS).into()
+        let judge_seams = |steps: &mut Steps<'_>| {
+            let offsets = groomed.offsets();
+            steps.kept("judge-seams", &(mesh, &offsets, direction, &patches, &tiles[0], WINDOWS), |steps| {
+                steps.run("judge seams", || {
+                    let axes = axes(mesh, direction, &patches);
+                    Ok(before_after(mesh, &offsets, &axes, &patches, &tiles[0], WINDOWS))
+                })
             })
-        });
+        };
+        let seams = request.judge.then(|| judge_seams(steps)).transpose()?.map(Into::into);
         let worn = if others.is_empty() {
             steps.run("coat primitives", || task.coat_primitives(&groomed, &patches, &tiles[0]))
         } else {

@@ -11,6 +11,7 @@ use crate::data::camera::Camera;
 use crate::data::film::Film;
 use crate::data::subject::Subject;
 use crate::error::Result;
+use crate::fur::field::directions;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::groom::refine::{Finest, refine};
 use crate::fur::grow;
@@ -108,7 +109,7 @@ impl Grown {
         let furred = |part: usize| chosen.contains(&part);
         let skin = weld::join(&asset, furred, scale.metres_per_unit, fibre.length_m)?;
         let role = |part: usize| if furred(part) { Role::Furred } else { Role::Bare };
-        let whole = skin::groom(&asset, &skin, role, preset, &scale)?;
+        let whole = skin::groom(&asset, &skin, role, preset, &scale, directions)?;
         let hair_m = reaches_m(&asset, &whole, tile.height_m);
         let groomed = shown(&asset, whole, pose.as_ref(), scale.metres_per_unit)?;
         notes.extend(groomed.notes.iter().cloned());

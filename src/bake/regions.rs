@@ -51,7 +51,7 @@ pub(super) fn wear_all(
 ) -> Result<Vec<(usize, CoatPrimitive)>> {
     let mut fields = vec![own.fields.clone()];
     for preset in presets {
-        let groomed = steps.run("groom", || task.groom(preset))?;
+        let groomed = task.groom(preset, steps)?;
         fields.push(groomed.cut(|part| task.parts.contains(&(part as usize))).fields);
     }
     let axes = axes(own.mesh(), &own.fields.direction, patches);

@@ -13,7 +13,7 @@ use crate::data::mesh::Mesh;
 use crate::data::paint::{Paint, Painted};
 use crate::data::texture::Texture;
 use crate::error::Result;
-use crate::fur::field::Singularity;
+use crate::fur::field::{DirectionField, FieldSource, Singularity};
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::groom::{ColourSource, fields, parted};
 use crate::math::{Mat3, Vec3, Vec4};
@@ -46,7 +46,8 @@ pub enum Role {
     Aside,
 }
 
-/// Gathers everything that decides how hair lies on `skin`, whose parts have these roles.
+/// Gathers everything that decides how hair lies on `skin`, whose parts have these roles. `directions` makes the comb: see
+/// [`comb`].
 ///
 /// # Errors
 /// When a map or texture cannot be read, or the comb's sources make no sense.
@@ -56,11 +57,12 @@ pub fn groom(
     role: impl Fn(usize) -> Role,
     preset: &Preset,
     scale: &Scale,
+    directions: impl FnOnce(&Mesh, &[FieldSource]) -> Result<DirectionField>,
 ) -> Result<Groomed> {
     let mut notes = Vec::new();
     let maps = Arc::new(decode(&preset.maps)?);
     let paint = paint(asset, skin, &role, preset, &maps, &mut notes)?;
-    let comb = comb(asset, &skin.mesh, &preset.groom, &maps, scale, &mut notes)?;
+    let comb = comb(asset, &skin.mesh, &preset.groom, &maps, scale, &mut notes, directions)?;
     let diagonal_m = scale.diagonal_m as f32;
     let guard = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
     let undercoat = Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m);

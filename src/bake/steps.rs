@@ -57,6 +57,16 @@ impl<'a> Steps<'a> {
         result
     }
 
+    /// Does a step that does steps itself: their time is theirs.
+    pub(super) fn around<T>(&mut self, name: &'static str, step: impl FnOnce(&mut Self) -> T) -> T {
+        (self.tell)(name);
+        let (start, before_ms) = (Instant::now(), self.times.total_ms());
+        let result = step(self);
+        let theirs_ms = self.times.total_ms() - before_ms;
+        self.times.add(name, start.elapsed().as_secs_f64() * 1e3 - theirs_ms, 0);
+        result
+    }
+
     /// What `stage` makes of `made_from`: as it was kept, or else what `make` gives, which is then kept. The result must not
     /// depend on anything but `made_from` and this program.
     ///

@@ -64,7 +64,9 @@ pub(super) fn tile_of(
         let hair = hair.grown(steps);
         steps.run("judge", || Ok(coverage_table(hair, &tile, leaning(recipe.lean_deg), EFFORT)))
     };
-    let accuracy = task.request.judge.then(|| steps.kept("judge", &(made_from, EFFORT), judge)).transpose()?;
+    // How much hair covers is no matter of its colour.
+    let seen = (fibres.each_ref().map(Fibre::colourless), seed, recipe.shells, recipe.lean_deg, EFFORT);
+    let accuracy = task.request.judge.then(|| steps.kept("judge", &seen, judge)).transpose()?;
     Ok((tile, accuracy))
 }
 

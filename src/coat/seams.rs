@@ -9,12 +9,13 @@ use crate::fur::patch::{PIXEL, SeamPoint, compare_seams};
 
 pub use crate::fur::patch::WINDOWS;
 use crate::math::{Vec2, Vec3};
+use serde::{Deserialize, Serialize};
 
 /// Angles between ray and normal at which seams are looked at, degrees.
 pub const ANGLES_DEG: [f32; 3] = [0.0, 45.0, 75.0];
 
 /// A coat's seams before and after patches were moved against them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BeforeAfter {
     /// Every patch at an offset by chance.
     pub by_chance: Seams,

@@ -13,6 +13,7 @@ pub struct Image8 {
     /// Bytes per pixel: 1 or 4.
     pub channels: u32,
     /// `width * height * channels` bytes.
+    #[serde(with = "serde_bytes")]
     pub pixels: Vec<u8>,
 }
 

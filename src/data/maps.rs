@@ -3,9 +3,10 @@
 use super::image::Image8;
 use super::texture::{Wrap, bilinear};
 use crate::math::{Vec2, Vec3, Vec4};
+use serde::Serialize;
 
 /// Decoded maps; each is RGBA.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Maps {
     /// Red: factor on density.
     pub density: Option<Image8>,

@@ -3,6 +3,7 @@
 use super::spread::{LEAST_RISE, widest};
 use crate::error::{Error, Result};
 use crate::math::{DVec3, I64Vec3, Mat3, Vec2, Vec3, Vec4};
+use serde::Serialize;
 use std::collections::{BTreeMap, HashMap};
 
 /// What an angle of 1 rad counts when angles are summed in whole numbers: 2²¹ triangles around a vertex still fit.
@@ -11,7 +12,7 @@ const WHOLE: f64 = (1_u64 << 40) as f64;
 /// A triangle mesh in metres, world axes (+Y up), relative to `origin_m`.
 ///
 /// Vertex arrays have one entry per vertex; optional ones are absent or just as long.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Mesh {
     /// Where (0, 0, 0) of `positions_m` lies in the world, so that f32 stays precise far from it.
     pub origin_m: DVec3,

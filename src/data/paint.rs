@@ -5,6 +5,7 @@ use super::maps::{Maps, painted_comb, sample, uv_axes};
 use super::mesh::Mesh;
 use super::texture::Texture;
 use crate::math::{Vec2, Vec3, Vec4};
+use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
 /// What is painted on a part of the skin.
@@ -19,7 +20,7 @@ pub struct Painted {
 }
 
 /// What is painted on a skin.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Paint {
     /// Of each part of the skin.
     pub parts: Vec<Painted>,
@@ -49,6 +50,14 @@ pub struct PaintedPoint {
 
 /// Most points along a triangle's edge at which painted length is looked at.
 const MOST_POINTS: f32 = 512.0;
+
+impl Serialize for Painted {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { colour, maps, bare } = self;
+        let colour = colour.as_ref().map(|(texture, image)| (texture, image.as_ref()));
+        (colour, maps.as_deref(), bare).serialize(serializer)
+    }
+}
 
 impl Painted {
     /// Whether anything in it varies within a triangle.

@@ -1,9 +1,10 @@
 //! A line from which hair falls away to both sides.
 
 use crate::math::Vec3;
+use serde::Serialize;
 
 /// A parting. Lengths and places are in the mesh's rest pose, m.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parting {
     /// The line, on or near the skin.
     pub line_m: Vec<Vec3>,

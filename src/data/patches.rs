@@ -1,9 +1,10 @@
 //! Texture coordinates for fur: the skin cut into patches that lie flat, combed along +u.
 
 use crate::math::Vec2;
+use serde::{Deserialize, Serialize};
 
 /// A coat's texture coordinates. Vertex arrays have one entry per coat vertex; every skin triangle appears once.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Patches {
     /// Skin mesh vertex that the coat vertex lies on.
     pub base_vertex: Vec<u32>,
@@ -23,7 +24,7 @@ pub struct Patches {
 }
 
 /// A square of texels that holds charts, each in a rectangle of its own.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Square {
     /// Texels along its edge.
     pub texels: u32,
@@ -44,7 +45,7 @@ impl Patches {
 }
 
 /// Mean and the 5th and 95th percentile, weighted by skin area.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Mean.
     pub mean: f64,
@@ -55,7 +56,7 @@ pub struct Spread {
 }
 
 /// How much seams show (`docs/steps/patch.md`). Ratios are means over three views, 1 where there is nothing to compare.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Seams {
     /// Borders between patches and cuts within them: edges whose sides have coordinates of their own.
     pub edges: usize,
@@ -68,7 +69,7 @@ pub struct Seams {
 }
 
 /// What a parameterisation does to the skin (`docs/steps/patch.md`). Triangles without area have no part in it.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stats {
     /// Patches, charts or islands.
     pub patches: usize,

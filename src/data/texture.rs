@@ -2,9 +2,10 @@
 
 use super::image::{Image8, linear_from_srgb8};
 use crate::math::{Vec2, Vec4};
+use serde::Serialize;
 
 /// A texture of a glTF file, as a material or a coat names it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Texture {
     /// glTF texture.
     pub index: usize,
@@ -23,7 +24,7 @@ pub struct Texture {
 }
 
 /// What a texture shows outside [0, 1].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Wrap {
     /// The same again.
     Repeat,

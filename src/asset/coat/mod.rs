@@ -21,8 +21,9 @@ pub use flatten::shells as flatten_shells;
 pub use input::Input;
 pub use read::{coat_of, read_coat, read_coat_as};
 pub use strip::{Stripped, bared, strip};
+pub use textures::Packed;
 pub use worn::{Worn, refuse_second};
-pub use write::{check_output, with_coat, write_coat, write_stripped};
+pub use write::{check_output, with_coat, write_coat, write_packed, write_stripped};
 
 pub use super::extension::NAME;
 

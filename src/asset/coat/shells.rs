@@ -9,20 +9,43 @@ use crate::data::image::Image8;
 use crate::data::shell::Slabs;
 use crate::error::Result;
 use crate::math::Vec2;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+/// A stack's textures as files hold them, each a KTX2 file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PackedShells {
+    #[serde(with = "serde_bytes")]
+    albedo: Vec<u8>,
+    #[serde(with = "serde_bytes")]
+    medium: Vec<u8>,
+    #[serde(with = "serde_bytes")]
+    ends: Vec<u8>,
+}
+
+impl PackedShells {
+    /// Of a stack.
+    ///
+    /// # Errors
+    /// When its mips or layers do not fit together.
+    pub fn new(shells: &ShellStack) -> Result<Self> {
+        let array = |images: &[Vec<Image8>], format| {
+            let levels: Vec<Vec<&Image8>> = images.iter().map(|level| level.iter().collect()).collect();
+            ktx2::encode(&levels, format, true)
+        };
+        Ok(Self {
+            albedo: array(&shells.albedo, Format::Rgba8Srgb)?,
+            medium: array(&shells.medium, Format::Rgba8)?,
+            ends: array(&shells.ends, Format::R8)?,
+        })
+    }
+}
+
 /// Appends a stack's textures and gives its JSON.
-pub fn write(document: &mut Document, shells: &ShellStack) -> Result<Value> {
-    let mut array = |images: &[Vec<Image8>], format| -> Result<usize> {
-        let levels: Vec<Vec<&Image8>> = images.iter().map(|level| level.iter().collect()).collect();
-        Ok(document.push_view(&ktx2::encode(&levels, format, true)?, None))
-    };
-    let (albedo, medium, ends) = (
-        array(&shells.albedo, Format::Rgba8Srgb)?,
-        array(&shells.medium, Format::Rgba8)?,
-        array(&shells.ends, Format::R8)?,
-    );
-    Ok(json!({
+pub fn write(document: &mut Document, shells: &ShellStack, packed: &PackedShells) -> Value {
+    let [albedo, medium, ends] =
+        [&packed.albedo, &packed.medium, &packed.ends].map(|bytes| document.push_view(bytes, None));
+    json!({
         "layers": shells.layers,
         "tops": numbers(shells.slabs.tops()),
         "size": shells.size,
@@ -33,7 +56,7 @@ pub fn write(document: &mut Document, shells: &ShellStack) -> Result<Value> {
         "albedo": albedo,
         "medium": medium,
         "ends": ends,
-    }))
+    })
 }
 
 /// The mips and layers of a texture.

@@ -1,6 +1,6 @@
 //! Tiles as JSON and KTX2 buffer views, and back.
 
-use super::shells::{self, images, positive};
+use super::shells::{self, PackedShells, images, positive};
 use crate::asset::Document;
 use crate::asset::encode::numbers;
 use crate::asset::json::At;
@@ -8,23 +8,50 @@ use crate::asset::ktx2::{self, Format};
 use crate::data::coat::{FinTexture, LOOK, Level, Sampled, Tile, TileLooks};
 use crate::data::image::Image8;
 use crate::error::Result;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+/// A tile's textures as files hold them, each a KTX2 file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Packed {
+    shells: PackedShells,
+    levels: Vec<PackedShells>,
+    #[serde(with = "serde_bytes")]
+    fin_albedo: Vec<u8>,
+    #[serde(with = "serde_bytes")]
+    fin_tangent: Vec<u8>,
+}
+
+impl Packed {
+    /// Of a tile: most of the work of writing a coat.
+    ///
+    /// # Errors
+    /// When its mips or layers do not fit together.
+    pub fn new(tile: &Tile) -> Result<Self> {
+        let single = |images: &[Image8], format| {
+            let levels: Vec<Vec<&Image8>> = images.iter().map(|image| vec![image]).collect();
+            ktx2::encode(&levels, format, false)
+        };
+        Ok(Self {
+            shells: PackedShells::new(&tile.shells)?,
+            levels: tile.levels.iter().map(|level| PackedShells::new(&level.shells)).collect::<Result<_>>()?,
+            fin_albedo: single(&tile.fin.albedo, Format::Rgba8Srgb)?,
+            fin_tangent: single(&tile.fin.tangent, Format::Rgba8)?,
+        })
+    }
+}
+
 /// Appends a tile's textures and gives its JSON.
-pub fn write(document: &mut Document, tile: &Tile) -> Result<Value> {
+pub fn write(document: &mut Document, tile: &Tile, packed: &Packed) -> Value {
     let fin = &tile.fin;
-    let shells = shells::write(document, &tile.shells)?;
-    let levels = tile.levels.iter().map(|level| {
-        let shells = shells::write(document, &level.shells)?;
+    let shells = shells::write(document, &tile.shells, &packed.shells);
+    let levels = tile.levels.iter().zip(&packed.levels).map(|(level, packed)| {
+        let shells = shells::write(document, &level.shells, packed);
         let undercoat_share = numbers(&level.undercoat_share);
-        Ok(json!({"mostPixels": f64::from(level.most_px), "undercoatShare": undercoat_share, "shells": shells}))
+        json!({"mostPixels": f64::from(level.most_px), "undercoatShare": undercoat_share, "shells": shells})
     });
-    let levels = levels.collect::<Result<Vec<_>>>()?;
-    let mut single = |images: &[Image8], format| -> Result<usize> {
-        let levels: Vec<Vec<&Image8>> = images.iter().map(|image| vec![image]).collect();
-        Ok(document.push_view(&ktx2::encode(&levels, format, false)?, None))
-    };
-    let (fin_albedo, fin_tangent) = (single(&fin.albedo, Format::Rgba8Srgb)?, single(&fin.tangent, Format::Rgba8)?);
+    let levels: Vec<Value> = levels.collect();
+    let [fin_albedo, fin_tangent] = [&packed.fin_albedo, &packed.fin_tangent].map(|bytes| document.push_view(bytes, None));
     let mut value = json!({
         "preset": tile.preset,
         "edge": f64::from(tile.edge_m),
@@ -53,7 +80,7 @@ pub fn write(document: &mut Document, tile: &Tile) -> Result<Value> {
             "undercoatShare": numbers(&looks.undercoat_share),
         });
     }
-    Ok(value)
+    value
 }
 
 /// So many finite numbers.

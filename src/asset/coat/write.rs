@@ -5,8 +5,9 @@ use super::input::{self, Input};
 use super::parts::{check, part_of, set_extension};
 use super::pool::pools;
 use super::strip::Stripped;
+use super::textures::{self, Packed};
 use super::worn::refuse_second;
-use super::{NAME, VERSION, textures};
+use super::{NAME, VERSION};
 use crate::asset::document::Document;
 use crate::asset::encode::{Use, numbers};
 use crate::asset::glb::is_glb;
@@ -38,8 +39,22 @@ pub fn check_output(out: &Path, inputs: &[PathBuf]) -> Result<bool> {
 /// # Errors
 /// When the coat does not fit the asset, or the output cannot be written; then no output is left behind.
 pub fn write_coat(asset: &Asset, coat: &Coat, fallback: Fallback, out: &Path) -> Result<Vec<String>> {
+    write_packed(asset, coat, &packed(coat)?, fallback, out)
+}
+
+/// The same with the textures of the coat's tiles, which are packed already.
+///
+/// # Errors
+/// As [`write_coat`].
+pub fn write_packed(
+    asset: &Asset,
+    coat: &Coat,
+    textures: &[Packed],
+    fallback: Fallback,
+    out: &Path,
+) -> Result<Vec<String>> {
     let text = check_output(out, &asset.document.files)?;
-    let mut document = with_coat(asset, coat, fallback)?;
+    let mut document = with_packed(asset, coat, textures, fallback)?;
     let mut notes = bring_images(&mut document, out, text)?;
     notes.extend(input::store(&mut document)?);
     write_document(document, out, text)?;
@@ -155,11 +170,19 @@ fn take_images_along(document: &mut Document) -> Result<Vec<String>> {
 /// When the asset has a coat already, or the coat does not fit it.
 pub fn with_coat(asset: &Asset, coat: &Coat, fallback: Fallback) -> Result<Document> {
     refuse_second(asset)?;
+    with_packed(asset, coat, &packed(coat)?, fallback)
+}
+
+fn packed(coat: &Coat) -> Result<Vec<Packed>> {
+    coat.tiles.iter().map(Packed::new).collect()
+}
+
+/// `textures` are those of the coat's tiles.
+fn with_packed(asset: &Asset, coat: &Coat, textures: &[Packed], fallback: Fallback) -> Result<Document> {
+    refuse_second(asset)?;
     let mut document = asset.document.clone();
-    let mut tiles = Vec::new();
-    for tile in &coat.tiles {
-        tiles.push(textures::write(&mut document, tile)?);
-    }
+    let tiles: Vec<Value> =
+        (coat.tiles.iter().zip(textures)).map(|(tile, packed)| textures::write(&mut document, tile, packed)).collect();
     for primitive in &coat.primitives {
         check(primitive, part_of(asset, primitive)?, &coat.tiles)?;
     }

@@ -9,6 +9,7 @@ use crate::data::mesh::Mesh;
 use crate::data::parting::Parting;
 use crate::error::{Error, Result};
 use crate::math::Vec3;
+use serde::{Deserialize, Serialize};
 use smooth::{Hold, smooth};
 use source::wishes;
 
@@ -16,7 +17,7 @@ pub use singular::Singularity;
 pub use source::distance_to_line;
 
 /// A point that hair turns around. Lengths and places are in the mesh's frame, m.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Whorl {
     /// Its middle.
     pub centre_m: Vec3,
@@ -28,7 +29,7 @@ pub struct Whorl {
 }
 
 /// Where the comb comes from.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum FieldSource {
     /// One direction per vertex, zero where unknown: a vertex attribute or a sampled groom map. Kept as it is.
     Vertices(Vec<Vec3>),
@@ -53,7 +54,7 @@ pub enum FieldSource {
 }
 
 /// A comb without gaps.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DirectionField {
     /// Tangent unit vector per vertex, the same at all vertices of one place; zero only where no triangle is.
     pub direction: Vec<Vec3>,

@@ -3,10 +3,11 @@
 use super::smooth::transport;
 use crate::data::mesh::Mesh;
 use crate::math::Vec3;
+use serde::{Deserialize, Serialize};
 use std::f32::consts::TAU;
 
 /// A point without direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Singularity {
     /// The triangle that holds it.
     pub triangle: u32,

@@ -17,6 +17,7 @@ use crate::data::mesh::Mesh;
 use crate::data::patches::Patches;
 use crate::error::{Error, Result};
 use crate::math::Vec3;
+use serde::Serialize;
 
 pub use atlas::{fit as fit_atlas, xatlas_alone};
 pub use measure::{of as measure, seam_edges, singular_values};
@@ -24,7 +25,7 @@ pub use seams::{PIXEL, SeamPoint, WINDOWS, compare_seams};
 pub use uv::need as need_uv_set;
 
 /// Where the texture coordinates come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Parameterisation {
     /// Irregular patches grown over the skin along the comb.
     Lapped {
