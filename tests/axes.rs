@@ -63,6 +63,7 @@ fn baked(input: &Path, reading: Reading, out: &Path) -> Baked {
         seed: 0,
         fallback: Fallback::None,
         judge: false,
+        cache: None,
     };
     bake(&request, &mut |_| {}).unwrap()
 }

@@ -3,7 +3,8 @@
 use super::key::Key;
 use super::plan::{Entry, Plan};
 use super::record::{Program, Record, Sources, create, digest_of, files_of};
-use crate::bake::bake;
+use crate::bake::{Request, bake};
+use crate::cache::Store;
 use crate::error::{Error, Kind, Result};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -12,7 +13,7 @@ use std::time::Instant;
 /// How often an asset is baked that changes meanwhile.
 const TRIES: usize = 3;
 
-/// Bakes an entry on so many threads. An asset that changes while it is read is baked again.
+/// Bakes an entry on so many threads, with what a cache has of it. An asset that changes while it is read is baked again.
 ///
 /// # Errors
 /// As [`bake`]; where the asset does not stop changing; where the record cannot be kept.
@@ -20,7 +21,7 @@ pub fn bake_entry(
     plan: &Plan,
     entry: &Entry,
     key: &Key,
-    threads: usize,
+    (threads, cache): (usize, Option<Store>),
     tell: &(dyn Fn(&'static str) + Sync),
 ) -> Result<Record> {
     let (input, output) = (plan.input(entry), plan.output(entry));
@@ -28,7 +29,7 @@ pub fn bake_entry(
     let records = plan.records();
     let recipe = &plan.recipes[entry.recipe];
     // All that a bake is given, it is given here.
-    let request = recipe.request(&input.to_string_lossy(), &output, false);
+    let request = Request { cache, ..recipe.request(&input.to_string_lossy(), &output, false) };
     for _ in 0..TRIES {
         let sources = Sources::read(&input)?;
         let start = Instant::now();

@@ -9,13 +9,14 @@ use super::plan::{Entry, Plan};
 use super::record::Record;
 use super::schedule::{Begun, Schedule};
 use super::standing::{Standing, Why, standing};
+use crate::cache::Store;
 use crate::error::{Error, Result};
 use rayon::prelude::*;
 use std::path::Path;
 use std::sync::mpsc;
 
 /// What a run may take, and when it stops.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Limits {
     /// Threads of all bakes together.
     pub threads: usize,
@@ -23,6 +24,8 @@ pub struct Limits {
     pub memory_bytes: Option<u64>,
     /// Whether the first failure is the last.
     pub fail_fast: bool,
+    /// What keeps finished stages for later bakes, and gives those of earlier ones.
+    pub cache: Option<Store>,
 }
 
 /// How entries stand, in their order, with the keys of the plan's recipes. A failure is that of one asset.
@@ -135,7 +138,13 @@ impl Crew<'_> {
                     running += 1;
                     scope.spawn(move || {
                         let step = |name| drop(says.send(Said::Step(entry.item, name)));
-                        let baked = bake_entry(plan, entry, &keys[entry.recipe], begun.threads, &step);
+                        let baked = bake_entry(
+                            plan,
+                            entry,
+                            &keys[entry.recipe],
+                            (begun.threads, self.limits.cache.clone()),
+                            &step,
+                        );
                         let _ = says.send(Said::Done(begun.item, begun, Box::new(baked)));
                     });
                 }

@@ -10,6 +10,7 @@ use crate::bake::{Baked, Laid, Request, bake};
 use crate::coat::summary::{Summary, summarise};
 use crate::error::{Error, Result};
 use crate::metrics::timing::Report;
+use crate::preset::Preset;
 use clap::Args;
 use serde::Serialize;
 use serde_json::{Value, json};

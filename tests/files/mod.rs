@@ -9,7 +9,7 @@ mod scenes;
 mod wild;
 
 use crate::one_skin::{grown, thin};
-use furrier::asset::{self, Asset, Document, Fallback};
+use furrier::asset::{self, Asset, Document, Fallback, Reading};
 use furrier::bake::units::Units;
 use furrier::bake::{Baked, Method, Request};
 use furrier::error::Error;
@@ -93,6 +93,8 @@ pub fn request(input: &Path, out: &Path) -> Request {
         seed: 1,
         fallback: Fallback::Shells(2),
         judge: false,
+        cache: None,
+        reading: Reading::default(),
     }
 }
 

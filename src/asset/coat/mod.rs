@@ -8,12 +8,12 @@ mod place;
 mod pool;
 mod ranges;
 mod read;
-mod shells;
 mod references;
+mod shells;
 mod strip;
 mod textures;
-mod worn;
 mod vrm;
+mod worn;
 mod write;
 
 pub use fallback::Fallback;

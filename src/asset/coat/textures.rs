@@ -51,7 +51,8 @@ pub fn write(document: &mut Document, tile: &Tile, packed: &Packed) -> Value {
         json!({"mostPixels": f64::from(level.most_px), "undercoatShare": undercoat_share, "shells": shells})
     });
     let levels: Vec<Value> = levels.collect();
-    let [fin_albedo, fin_tangent] = [&packed.fin_albedo, &packed.fin_tangent].map(|bytes| document.push_view(bytes, None));
+    let [fin_albedo, fin_tangent] =
+        [&packed.fin_albedo, &packed.fin_tangent].map(|bytes| document.push_view(bytes, None));
     let mut value = json!({
         "preset": tile.preset,
         "edge": f64::from(tile.edge_m),

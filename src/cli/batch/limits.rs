@@ -2,10 +2,11 @@
 
 use crate::batch::estimate;
 use crate::batch::run::Limits;
+use crate::cli::cache_flags::CacheFlags;
 use clap::Args;
 
 /// Threads and memory of a run.
-#[derive(Clone, Copy, Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct LimitArgs {
     /// Threads of all bakes together, 1 to 1024; the results do not depend on it. Default: all
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -14,6 +15,8 @@ pub struct LimitArgs {
     /// quarters of what is free
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     memory: Option<u64>,
+    #[command(flatten)]
+    cache: CacheFlags,
 }
 
 impl LimitArgs {
@@ -24,6 +27,7 @@ impl LimitArgs {
             threads: self.threads.map_or_else(all, usize::from),
             memory_bytes: self.memory.or_else(estimate::memory_bytes),
             fail_fast,
+            cache: self.cache.store(),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What is drawn of each asset for a report: a picture as a game shows it, and how far that is off its fur.
 
+use crate::asset::Reading;
 use crate::asset::coat::read_coat;
 use crate::bake::picture::{Only, PictureRequest};
 use crate::batch::outcome::Outcome;
@@ -56,6 +57,7 @@ pub fn flip(plan: &Plan, outcome: &Outcome) -> Result<f64> {
     }
     let fur = PictureRequest {
         input: plan.input(entry).to_string_lossy().into_owned(),
+        reading: Reading::default(),
         preset: recipe.preset.clone(),
         materials: recipe.materials.clone(),
         units: recipe.units,
