@@ -23,6 +23,7 @@ mod docs;
 mod field;
 mod fins;
 mod formulas;
+mod fuzz;
 mod gains;
 mod hard_renders;
 mod harness;
