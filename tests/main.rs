@@ -48,6 +48,7 @@ mod patch;
 mod posed;
 mod poses;
 mod presets;
+mod recipes;
 mod regions;
 mod render_cli;
 mod report_coat;
