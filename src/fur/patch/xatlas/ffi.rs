@@ -1,4 +1,5 @@
-//! xatlas.h, as far as it is needed: structs field by field, functions under the names of the Itanium C++ ABI.
+//! xatlas.h, as far as it is needed: structs field by field, functions under their C++ names, those of
+//! the Itanium ABI or of Microsoft's compiler (which xatlas-rs has, made by bindgen).
 
 use std::ffi::{c_char, c_int, c_void};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -121,15 +122,29 @@ type Parameterise = Option<extern "C" fn(*const f32, *mut f32, u32, *const u32, 
 type Print = Option<unsafe extern "C" fn(*const c_char, ...) -> c_int>;
 
 unsafe extern "C" {
-    #[link_name = "_ZN6xatlas6CreateEv"]
+    #[cfg_attr(not(target_env = "msvc"), link_name = "_ZN6xatlas6CreateEv")]
+    #[cfg_attr(target_env = "msvc", link_name = "\u{1}?Create@xatlas@@YAPEAUAtlas@1@XZ")]
     fn create() -> *mut AtlasHeader;
-    #[link_name = "_ZN6xatlas7DestroyEPNS_5AtlasE"]
+    #[cfg_attr(not(target_env = "msvc"), link_name = "_ZN6xatlas7DestroyEPNS_5AtlasE")]
+    #[cfg_attr(target_env = "msvc", link_name = "\u{1}?Destroy@xatlas@@YAXPEAUAtlas@1@@Z")]
     fn destroy(atlas: *mut AtlasHeader);
-    #[link_name = "_ZN6xatlas7AddMeshEPNS_5AtlasERKNS_8MeshDeclE"]
+    #[cfg_attr(not(target_env = "msvc"), link_name = "_ZN6xatlas7AddMeshEPNS_5AtlasERKNS_8MeshDeclE")]
+    #[cfg_attr(
+        target_env = "msvc",
+        link_name = "\u{1}?AddMesh@xatlas@@YA?AW4Enum@AddMeshError@1@PEAUAtlas@1@AEBUMeshDecl@1@@Z"
+    )]
     pub(super) fn add_mesh(atlas: *mut AtlasHeader, decl: *const MeshDecl) -> c_int;
-    #[link_name = "_ZN6xatlas8SetPrintEPFiPKczEb"]
+    #[cfg_attr(not(target_env = "msvc"), link_name = "_ZN6xatlas8SetPrintEPFiPKczEb")]
+    #[cfg_attr(target_env = "msvc", link_name = "\u{1}?SetPrint@xatlas@@YAXP6AHPEBDZZ_N@Z")]
     pub(super) fn set_print(print: Print, verbose: bool);
-    #[link_name = "_ZN6xatlas8GenerateEPNS_5AtlasENS_12ChartOptionsEPFvPKfPfjPKjjbENS_11PackOptionsEPFvNS_16ProgressCategory4EnumEiPvESD_"]
+    #[cfg_attr(
+        not(target_env = "msvc"),
+        link_name = "_ZN6xatlas8GenerateEPNS_5AtlasENS_12ChartOptionsEPFvPKfPfjPKjjbENS_11PackOptionsEPFvNS_16ProgressCategory4EnumEiPvESD_"
+    )]
+    #[cfg_attr(
+        target_env = "msvc",
+        link_name = "\u{1}?Generate@xatlas@@YAXPEAUAtlas@1@UChartOptions@1@P6AXPEBMPEAMIPEBII_N@ZUPackOptions@1@P6AXW4Enum@ProgressCategory@1@HPEAX@Z9@Z"
+    )]
     pub(super) fn generate(
         atlas: *mut AtlasHeader,
         charts: ChartOptions,
