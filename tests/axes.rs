@@ -1,5 +1,6 @@
 //! Files that are not y up: stood upright to be combed and seen, written as they were.
 
+use crate::common::shared;
 use crate::one_skin::thin;
 use furrier::asset::axes::{Axis, upright};
 use furrier::asset::{self, Fallback, Reading};
@@ -50,12 +51,12 @@ fn z_up() -> Reading {
     Reading { upright: Some(upright(axis("z"), None).unwrap()), rebake: false }
 }
 
-fn baked(input: &Path, reading: Reading, out: &Path) -> Baked {
-    let request = Request {
+fn request(input: &Path, reading: Reading, out: &Path) -> Request {
+    Request {
         input: input.to_string_lossy().into_owned(),
         reading,
         out: out.to_owned(),
-        preset: thin(&["groom.comb=tailward", "groom.gravity=1.0"]),
+        preset: thin(&["groom.comb=tailward", "groom.gravity=0.5"]),
         presets: vec![],
         materials: vec!["fur".into()],
         units: Units::Metres,
@@ -64,8 +65,11 @@ fn baked(input: &Path, reading: Reading, out: &Path) -> Baked {
         fallback: Fallback::None,
         judge: false,
         cache: None,
-    };
-    bake(&request, &mut |_| {}).unwrap()
+    }
+}
+
+fn baked(input: &Path, reading: Reading, out: &Path) -> Baked {
+    bake(&request(input, reading, out), &mut |_| {}).unwrap()
 }
 
 #[test]
@@ -124,4 +128,20 @@ fn hairs_and_pictures_of_it_stand_and_exports_lie_on_the_file() {
         String::from_utf8(asset::strands::encode(&grown.export("x"), format).unwrap()).unwrap()
     };
     assert!(text(&a).contains("upAxis = \"Y\"") && text(&b).contains("upAxis = \"Z\""));
+}
+
+#[test]
+fn a_scan_with_z_up_is_combed_from_head_to_tail() {
+    let Some(input) = shared().map(|shared| shared.join("wild/zup.obj")) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let mean = |reading| -> Vec3 {
+        let request = Request { materials: vec![], ..request(&input, reading, &folder.path().join("out.glb")) };
+        let offsets: Vec<Vec3> =
+            bake(&request, &mut |_| {}).unwrap().coat.primitives.iter().flat_map(|p| p.offset.clone()).collect();
+        offsets.iter().map(|offset| offset.normalize_or_zero()).sum::<Vec3>() / offsets.len() as f32
+    };
+    // Its front looks to -y, as that of Blender's files: hair lies towards +y. As if y were up, it lies towards its feet.
+    let (standing, lying) = (mean(z_up()), mean(Reading::default()));
+    assert!(standing.y > 0.3, "{standing}");
+    assert!(lying.y < 0.1 && lying.z < -0.3, "{lying}");
 }

@@ -52,7 +52,7 @@ fn fault(expected: Expected, result: &Result<Asset, Error>) -> Option<String> {
 }
 
 /// What a later step could not live with.
-fn unsound(asset: &Asset) -> Option<String> {
+pub fn unsound(asset: &Asset) -> Option<String> {
     asset.parts.iter().find_map(|part| {
         let mesh = match part.mesh(1.0) {
             Ok(mesh) => mesh,
@@ -138,7 +138,7 @@ fn use_all(bytes: &[u8]) -> Result<(), Error> {
 }
 
 /// One place of a JSON document, picked at random, replaced by something that seldom fits.
-fn corrupt(json: &mut Value, stream: &mut Stream) {
+pub fn corrupt(json: &mut Value, stream: &mut Stream) {
     let odd = [
         json!(null),
         json!(-1),

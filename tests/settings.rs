@@ -49,7 +49,7 @@ fn a_key_says_what_it_takes() {
     for key in &keys {
         assert!(!key.what.is_empty(), "{} is not explained", key.key);
         // What has a place has no bounds of its own.
-        let free = ["at.", "points.", "regions[0].reach."].iter().any(|part| key.key.contains(part));
+        let free = [".at.", ".points.", "regions[0].reach."].iter().any(|part| key.key.contains(part));
         assert_eq!(key.value.contains("number") && !free, key.range.is_some(), "{}: {}", key.key, key.expected());
     }
 }

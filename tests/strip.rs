@@ -315,3 +315,24 @@ fn baking_anew_is_baking_the_input() {
     strip("anew.glb", "no.obj").code(2);
     assert!(!path("no.glb").exists() && !path("no.obj").exists());
 }
+
+#[test]
+fn what_a_modelling_program_left_of_a_coat_comes_off() {
+    let Some(input) = shared().map(|shared| shared.join("wild/roundtrip_keeps_extras.glb")) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out.glb");
+    let said = predicate::str::contains("Beast fur shells").and(predicate::str::contains("furrier strip IN -o OUT"));
+    bake(&input, &out, &[]).code(3).stderr(said);
+    let bare = stripped(&input);
+    let json = &bare.document.json;
+    for list in ["nodes", "meshes", "materials"] {
+        assert_eq!(json[list].as_array().map(Vec::len), Some(1), "{list}");
+    }
+    for list in ["images", "textures", "samplers", "extras"] {
+        assert!(json.get(list).is_none(), "{list}");
+    }
+    // The skin's four accessors, of 7720 bytes, are all that is left.
+    assert_eq!((json["accessors"].as_array().map(Vec::len), bare.document.binary.len()), (Some(4), 7720));
+    bake(&input, &out, &["--rebake"]).code(0);
+    assert_eq!(stripped(&out).input, Input::Whole(bare.document.to_glb().unwrap()));
+}

@@ -61,8 +61,9 @@ Examples:
 ";
 
 const MAPS: &str = "
-Painted maps, over the first UV set: --set maps.length=FILE.png, maps.density, maps.colour, maps.comb, maps.clump.
-`furrier presets keys` prints every key of a preset, `furrier presets keys maps` these. Worked examples: docs/recipes.md.";
+Painted maps, over the first UV set: --set maps.length=FILE.png, maps.density, maps.colour,
+maps.comb, maps.clump. `furrier presets keys maps` explains them, `furrier presets keys` every key
+of a preset. Worked examples: docs/recipes.md.";
 
 /// Examples, the presets there are, and where painting is told.
 fn after_help() -> String {

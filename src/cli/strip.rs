@@ -18,9 +18,10 @@ Examples:
   furrier strip edited.glb -o bare.glb
       what another program changed or added stays; extension, shells, their textures and names go
 
-A baked file keeps the JSON of its input, compressed, beside the data that both share. Where it was changed since, where the
-input was an OBJ or a built-in mesh, or where the output is of another kind (.gltf for a .glb), the coat alone is taken off,
-and that is said. What a .gltf names, its .bin and its pictures, does not come back: it lies where it lay.")]
+A baked file keeps the JSON of its input, compressed, beside the data that both share. Where it
+was changed since, where the input was an OBJ or a built-in mesh, or where the output is of another
+kind (.gltf for a .glb), the coat alone is taken off, and that is said. What a .gltf names, its .bin
+and its pictures, does not come back: it lies where it lay.")]
 pub struct Strip {
     /// A file that furrier baked, or what another program left of one
     file: PathBuf,
@@ -47,7 +48,7 @@ impl Strip {
             let (output, file) = (self.output.display(), self.file.display());
             match identical {
                 true => writeln!(out, "{output}: the file that {file} was baked from, byte for byte"),
-                false => writeln!(out, "{output}: {file} without its coat"),
+                false => writeln!(out, "{output}: {file} without its coat, not the bytes of its input"),
             }
         })
     }

@@ -190,9 +190,16 @@ impl Node {
     }
 
     fn what(&self) -> String {
-        let text = self.field["description"].as_str().or(self.schema["description"].as_str()).unwrap_or_default();
-        text.split_whitespace().collect::<Vec<_>>().join(" ")
+        self.field["description"].as_str().map_or_else(|| self.words_of_type(), one_line)
     }
+
+    fn words_of_type(&self) -> String {
+        one_line(self.schema["description"].as_str().unwrap_or_default())
+    }
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 fn key(name: &str, node: &Node, default: Option<Value>) -> Key {
@@ -239,10 +246,10 @@ fn check_node(name: &str, node: &Node, value: &toml::Value) -> Result<()> {
         }
         toml::Value::Array(items) => {
             let Some(entry) = node.entries() else { return Ok(()) };
-            return items.iter().enumerate().try_for_each(|(i, item)| {
-                // Colours are named as a whole, tables of a list one by one.
-                let path = if entry.is_table() { format!("{name}[{i}]") } else { name.to_owned() };
-                check_node(&path, &entry, item)
+            return items.iter().enumerate().try_for_each(|(i, item)| match entry.is_table() {
+                true => check_node(&format!("{name}[{i}]"), &entry, item),
+                // Colours are named as a whole.
+                false => check_node(name, &entry, item).map_err(|error| error.with_expected(node.expected(name))),
             });
         }
         // As they were written: numbers of presets are f32.
@@ -293,7 +300,7 @@ fn collect(name: &str, node: &Node, defaults: &Value, what: &str, tables: &mut V
         tables[at].keys.push(key(&path, &node, default));
     }
     for (path, node, defaults) in inner {
-        collect(&path, &node, &defaults, &node.what(), tables);
+        collect(&path, &node, &defaults, &node.words_of_type(), tables);
     }
     for (path, entry) in lists {
         collect(&path, &entry, &Value::Null, &entry.what(), tables);

@@ -65,6 +65,7 @@ impl<'a> Place<'a> {
     /// Says what would have been there.
     fn step(self, part: &Part) -> std::result::Result<Self, String> {
         let node = self.node.step(part).ok_or_else(|| "a key that there is".to_owned())?;
+        let grows = !self.node.is_fixed();
         let value = match (part, self.value) {
             (Part::Key(name), Value::Table(table)) => {
                 // A length is one value in one of two units, not a table of two.
@@ -75,12 +76,13 @@ impl<'a> Place<'a> {
             }
             (Part::Index(index), Value::Array(list)) => {
                 let length = list.len();
-                if *index == length && !node.is_fixed() {
+                if *index == length && grows {
                     list.push(empty(&node));
                 }
                 list.get_mut(*index).ok_or_else(|| match length {
                     0 => "[0], which adds the first entry".to_owned(),
-                    _ => format!("an entry from [0] to [{}], or [{length}] to add one", length - 1),
+                    _ if grows => format!("an entry from [0] to [{}], or [{length}] to add one", length - 1),
+                    _ => format!("an entry from [0] to [{}]", length - 1),
                 })?
             }
             _ => return Err("a table or a list".to_owned()),

@@ -242,6 +242,16 @@ fn radiance_row<'a>(mut rest: &'a [u8], row: &mut [[u8; 4]]) -> Option<&'a [u8]>
 
 fn exr_picture(path: &Path) -> Result<Picture> {
     use exr::prelude::*;
+    let unreadable = |e: exr::error::Error| {
+        crate::stage::environment::Error::input("the environment map cannot be read")
+            .with_field("EXR")
+            .with_found(e)
+            .with_expected("a whole OpenEXR picture in RGB")
+    };
+    // Before room is made for pixels that a lying header only claims to have.
+    for header in &MetaData::read_from_file(path, false).map_err(unreadable)?.headers {
+        checked_size(header.layer_size.width(), header.layer_size.height())?;
+    }
     let image = read_first_rgba_layer_from_file(
         path,
         |size, _| (size.width(), vec![Vec3::ZERO; size.area()]),
@@ -249,8 +259,7 @@ fn exr_picture(path: &Path) -> Result<Picture> {
             pixels[position.y() * *width + position.x()] = Vec3::new(r, g, b);
         },
     )
-    .map_err(|e| crate::stage::environment::Error::input("the environment map cannot be read").with_found(e))?;
+    .map_err(unreadable)?;
     let size = image.layer_data.size;
-    let pixels = image.layer_data.channel_data.pixels.1;
-    checked_size(size.width(), size.height()).map(|_| (size.width(), size.height(), pixels))
+    Ok((size.width(), size.height(), image.layer_data.channel_data.pixels.1))
 }

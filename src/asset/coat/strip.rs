@@ -162,7 +162,7 @@ impl Bare {
                 channels.retain(|channel| !of_shells(channel));
             }
         }
-        drop_references(json, "", &gone, &shown);
+        drop_references(json, "", "", &gone, &shown);
         self.coats.extend(gone.iter().map(|&node| ("nodes", node as usize)));
     }
 
@@ -263,25 +263,25 @@ fn drop_empty(owner: &mut Value, key: &str) {
     }
 }
 
-/// Takes nodes that go out of lists of nodes, and what extensions say of them and of meshes that go.
-fn drop_references(value: &mut Value, parent: &str, nodes: &BTreeSet<u64>, meshes: &BTreeSet<u64>) {
+/// Takes nodes that go out of lists of nodes, and what extensions say of them and of meshes that go. `value` is the member
+/// `parent` of something below the document's member `top`.
+fn drop_references(value: &mut Value, top: &str, parent: &str, nodes: &BTreeSet<u64>, meshes: &BTreeSet<u64>) {
     let refers =
         |item: &Value, key: &str, to: &BTreeSet<u64>| item[key].as_u64().is_some_and(|index| to.contains(&index));
     match value {
         Value::Array(items) => {
-            if matches!(parent, "nodes" | "children" | "bones" | "ids") {
+            if matches!((top, parent), (_, "nodes" | "children" | "bones") | ("nodes", "ids")) {
                 items.retain(|item| item.as_u64().is_none_or(|index| !nodes.contains(&index)));
             }
             if !matches!(parent, "nodes" | "channels") {
                 items.retain(|item| !refers(item, "node", nodes) && !refers(item, "mesh", meshes));
             }
-            items.iter_mut().for_each(|item| drop_references(item, parent, nodes, meshes));
+            items.iter_mut().for_each(|item| drop_references(item, top, parent, nodes, meshes));
         }
         Value::Object(members) => {
-            members
-                .iter_mut()
-                .filter(|(key, _)| *key != "extras")
-                .for_each(|(key, inner)| drop_references(inner, key, nodes, meshes));
+            for (key, inner) in members.iter_mut().filter(|(key, _)| *key != "extras") {
+                drop_references(inner, if top.is_empty() { key } else { top }, key, nodes, meshes);
+            }
         }
         _ => {}
     }
