@@ -16,7 +16,7 @@ pub fn page(results: &Results, before: Option<&Results>) -> String {
     );
     let rows: String =
         results.rows.iter().map(|row| line(row, before.and_then(|before| before.row(&row.outcome.output)))).collect();
-    PAGE.replace("<!--totals-->", &escaped(&totals)).replace("<!--rows-->", &rows)
+    PAGE.replace("{{totals}}", &escaped(&totals)).replace("{{rows}}", &rows)
 }
 
 fn line(row: &Row, old: Option<&Row>) -> String {

@@ -136,7 +136,7 @@ impl LibraryArgs {
     /// Folders with what is baked, and with the files of presets.
     fn folders(&self) -> Vec<PathBuf> {
         let folder = |path: &PathBuf| if path.is_dir() { path.clone() } else { beside(path) };
-        self.library.iter().map(folder).chain(self.recipe.preset_files().iter().map(beside)).collect()
+        self.library.iter().map(folder).chain(self.recipe.preset_files().iter().map(|file| beside(file))).collect()
     }
 }
 
@@ -159,7 +159,7 @@ fn summary(outcomes: &[Outcome]) -> serde_json::Value {
 }
 
 /// The folder that a file lies in.
-fn beside(path: &PathBuf) -> PathBuf {
+fn beside(path: &Path) -> PathBuf {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned()
 }
 

@@ -36,9 +36,8 @@ pub fn watch(library: &LibraryArgs, console: &Console, bake: &dyn Fn(&Plan) -> R
                 watcher.watch(&folder, RecursiveMode::Recursive).map_err(fail)?;
             }
         }
-        match plan.and_then(|plan| bake(&plan)) {
-            Err(error) => console.error(error),
-            Ok(()) => {}
+        if let Err(error) = plan.and_then(|plan| bake(&plan)) {
+            console.error(error);
         }
         console.note("waiting for changes; Ctrl-C ends it");
         if !changed(&heard, &own) {
