@@ -214,6 +214,7 @@ fn baked(input: &Path, out: &Path) -> furrier::Result<()> {
         seed: 0,
         fallback: Fallback::Shells(2),
         judge: false,
+        cache: None,
     };
     bake(&request, &mut |_| {}).map(drop)
 }
