@@ -125,7 +125,8 @@ fn try_all(name: &str, count: u64) {
         first += ended.tried.max(1);
         faults.extend(ended.fault.map(|(case, fault)| format!("{name} {case}: {fault}")));
         // After a fault, the next process goes on behind it.
-        if (seconds.is_none() && (faults.len() > 5 || first >= count))
+        if faults.len() > 5
+            || (seconds.is_none() && first >= count)
             || (seconds.is_some() && start.elapsed() >= longest)
         {
             break;
@@ -175,6 +176,20 @@ fn exr() {
 #[test]
 fn png_maps() {
     try_all("png", 300);
+}
+
+#[test]
+fn an_exr_that_claims_a_huge_size_is_refused() {
+    let mut bytes = cases::seeds("exr").swap_remove(0);
+    let name = b"dataWindow\0box2i\0";
+    let at = bytes.windows(name.len()).position(|window| window == name).expect("a data window") + name.len() + 4;
+    bytes[at + 8..at + 12].copy_from_slice(&(1_i32 << 29).to_le_bytes());
+    bytes[at + 12..at + 16].copy_from_slice(&(1_i32 << 20).to_le_bytes());
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("huge.exr");
+    std::fs::write(&path, bytes).unwrap();
+    let error = furrier::stage::environment::Environment::read(&path).unwrap_err();
+    assert!(error.file.is_some() && error.found.is_some(), "{error}");
 }
 
 #[test]
