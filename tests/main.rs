@@ -10,6 +10,7 @@ mod accuracy;
 mod architecture;
 mod atlas;
 mod bake;
+mod cache;
 mod circles;
 mod cli;
 mod coat_file;
