@@ -12,6 +12,7 @@ mod atlas;
 mod axes;
 mod bake;
 mod batch;
+mod cache;
 mod circles;
 mod cli;
 mod coat_file;
