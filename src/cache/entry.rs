@@ -1,10 +1,7 @@
 //! A value's file: magic, format, epoch, key, hash, length, and the value compressed by Zstandard.
 
-use super::key::EPOCH;
+use super::key::{EPOCH, FORMAT};
 use std::io::Result;
-
-/// Version of the layout of files, and of how values are written as bytes.
-pub const FORMAT: u32 = 1;
 
 const MAGIC: [u8; 8] = *b"FURCACHE";
 /// Where what the hash is of begins: behind magic and hash.

@@ -1,8 +1,10 @@
 //! What a value was made from, as a hash.
 
-use super::entry::FORMAT;
 use crate::error::{Error, Kind, Result};
 use serde::Serialize;
+
+/// Version of the layout of files, and of how values are written as bytes.
+pub const FORMAT: u32 = 1;
 
 /// A hash of the code that bakes (`build.rs`).
 pub const EPOCH: &str = env!("FURRIER_EPOCH");

@@ -126,7 +126,7 @@ fn another_colour_takes_what_rays_told() {
     let folder = tempfile::tempdir().unwrap();
     let cache = Some(Store::new(folder.path().join("cache")));
     let first = Request { cache, judge: true, ..request("sample:sphere", preset("fox", &[])) };
-    baked(&first, folder.path());
+    let judged = baked(&first, folder.path()).1.accuracy;
     let colours = [
         "colour.guard=[[0.9, 0.1, 0.1], [0.1, 0.9, 0.1], [0.1, 0.1, 0.9]]",
         "colour.undercoat=[[0.2, 0.3, 0.4], [0.5, 0.4, 0.3]]",
@@ -137,13 +137,17 @@ fn another_colour_takes_what_rays_told() {
     for colour in colours {
         let Ok(preset) = preset("fox", &[]).with_settings(&[colour.to_owned()]) else { panic!("{colour}") };
         let changed = Request { preset, ..first.clone() };
-        let without = baked(&Request { cache: None, ..changed.clone() }, folder.path());
-        let (bytes, baked) = baked(&changed, folder.path());
-        assert!(bytes == without.0, "{colour}: the file differs");
-        assert_eq!(baked.accuracy, without.1.accuracy, "{colour}");
-        let found = ["tile", "tile-ends", "tile-gains", "judge", "patches", "comb"].map(|stage| uses(&baked, stage));
-        assert_eq!(found, [[0, 1], [1, 0], [1, 0], [1, 0], [1, 0], [1, 0]], "{colour}");
+        let without = baked(&Request { cache: None, judge: false, ..changed.clone() }, folder.path()).0;
+        let (bytes, baked) = baked(&Request { judge: false, ..changed }, folder.path());
+        assert!(bytes == without, "{colour}: the file differs");
+        let found = ["tile", "tile-ends", "tile-gains", "patches", "comb"].map(|stage| uses(&baked, stage));
+        assert_eq!(found, [[0, 1], [1, 0], [1, 0], [1, 0], [1, 0]], "{colour}");
     }
+    // How much hair covers is no matter of its colour: the same without a cache, and not looked at again with one.
+    let changed = Request { preset: preset("fox", &[colours[0]]), ..first };
+    assert_eq!(baked(&Request { cache: None, ..changed.clone() }, folder.path()).1.accuracy, judged);
+    let again = baked(&changed, folder.path()).1;
+    assert_eq!((uses(&again, "judge"), &again.accuracy), ([1, 0], &judged));
 }
 
 #[test]
