@@ -34,7 +34,22 @@ pub fn decode(bytes: &[u8]) -> Result<Image8, String> {
     Ok(Image8 { width, height, channels: 4, pixels })
 }
 
+/// Most bytes that a level may say that it decompresses to: what the largest image holds that is decoded.
+const MAX_LEVEL_BYTES: u64 = 1 << 28;
+/// Where the number of levels stands in the header, where their index begins, and how far apart its entries are, bytes.
+const LEVELS: [usize; 3] = [40, 80, 24];
+
 fn open(bytes: &[u8]) -> Result<Transcoder<'_>, String> {
+    // The decoder makes room for whatever a level claims.
+    let [count_at, index_at, step] = LEVELS;
+    let count = bytes.get(count_at..count_at + 4).and_then(|b| b.try_into().ok()).map_or(0, u32::from_le_bytes);
+    for level in 0..count.clamp(1, 32) as usize {
+        let at = index_at + level * step + 16;
+        let claimed = bytes.get(at..at + 8).and_then(|b| b.try_into().ok()).map_or(0, u64::from_le_bytes);
+        if claimed > MAX_LEVEL_BYTES {
+            return Err(format!("level {level} claims {claimed} bytes"));
+        }
+    }
     let texture = Transcoder::new(bytes).map_err(told)?;
     if !texture.supports(TargetFormat::Rgba32) {
         return Err(format!("{:?} has no eight bits per channel", texture.source_format()));

@@ -50,6 +50,19 @@ fn hair_has_the_colours_of_basis_textures() {
     assert!(close(hair_colour(&glb(&document, folder.path(), "both.glb")), [0.0, 1.0, 0.0]));
 }
 
+#[test]
+fn a_texture_that_claims_much_is_left_out() {
+    let material = json!({"name": "Fur", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}});
+    let mut bytes = texture(2);
+    // What its level decompresses to: 280 TB.
+    bytes[80 + 16 + 5] = 0xFF;
+    let mut document = plane(material, &[&bytes]);
+    document.push("textures", json!({"extensions": {"KHR_texture_basisu": {"source": 0}}}));
+    let asset = asset::Asset::new(document, Vec::new()).unwrap();
+    assert!(says(&asset.warnings, &["images[0]", "claims 280375465082"]), "{:?}", asset.warnings);
+    assert_eq!(asset.parts[0].base_colour.texture, None);
+}
+
 /// The sample with its only primitive as a Draco stream, and nothing beside it.
 fn compressed(name: &str, speed: i32) -> Document {
     let mut document = asset::load(name).unwrap().document;
