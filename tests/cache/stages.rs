@@ -1,6 +1,6 @@
 //! The same bytes with a cache and without, cold and warm; and what is taken from it when something changes.
 
-use furrier::asset::Fallback;
+use furrier::asset::{Fallback, Reading};
 use furrier::bake::units::Units;
 use furrier::bake::{Baked, Method, Request, bake};
 use furrier::cache::Store;
@@ -29,6 +29,7 @@ fn preset(name: &str, settings: &[&str]) -> Preset {
 fn request(input: &str, preset: Preset) -> Request {
     Request {
         input: input.into(),
+        reading: Reading::default(),
         out: PathBuf::new(),
         preset,
         presets: vec![],

@@ -24,7 +24,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 /// The dolly's pictures have this part of the others' edges.
-const DOLLY_PART: u32 = 4;
+const DOLLY_PART: u32 = 2;
 
 /// Look at a coat's levels of detail from near and far beside the fur that they stand for
 #[derive(Debug, Args)]
@@ -35,7 +35,7 @@ Examples:
   furrier report levels sample:hat -o hat.json --preset mink --size 256x256 --max-flip 0.1
 
 Every level is drawn from every distance in the studio's light and compared with the render that `report coat` makes. Then a camera \
-goes out to 64 times the distance, levels chosen as `view` does: how much pictures differ from one to the next beside how much \
+goes out to 16 times the distance, levels chosen as `view` does: how much pictures differ from one to the next beside how much \
 renders do. docs/steps/levels.md says what is measured.")]
 pub struct Levels {
     #[command(flatten)]
@@ -43,7 +43,7 @@ pub struct Levels {
     /// Distances, as factors on that at which the asset just fits, 0.05 to 100
     #[arg(long, value_name = "DISTANCE,…", default_value = "1,2,4,8,16,32,64")]
     distances: String,
-    /// Pictures on the way out, of a quarter of the size; 0 leaves it out
+    /// Pictures on the way out, of half the size; 0 leaves it out
     #[arg(long, value_name = "N", default_value_t = 96)]
     dolly: usize,
     /// Exit with 1 where the dolly's mean FLIP is over the render's by more than this

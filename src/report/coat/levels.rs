@@ -11,8 +11,8 @@ use crate::stage::light::Lit;
 use crate::stage::rig::Rig;
 use serde::Serialize;
 
-/// Furthest that the camera goes on its way out, times the distance at which the asset just fits.
-const FURTHEST: f64 = 64.0;
+/// Furthest that the camera goes on its way out, times the distance at which the asset just fits: there is still an asset to see.
+const FURTHEST: f64 = 16.0;
 
 /// A level as it was drawn.
 pub struct Shown {
