@@ -130,10 +130,10 @@ fn another_colour_takes_what_rays_told() {
     let judged = baked(&first, folder.path()).1.accuracy;
     let colours = [
         "colour.guard=[[0.9, 0.1, 0.1], [0.1, 0.9, 0.1], [0.1, 0.1, 0.9]]",
-        "colour.undercoat=[[0.2, 0.3, 0.4], [0.5, 0.4, 0.3]]",
+        "colour.undercoat=[[0.2, 0.3, 0.4], [0.5, 0.4, 0.3], [0.9, 0.8, 0.7]]",
         "colour.variation=0.7",
         "colour.skin=[0.3, 0.9, 0.2]",
-        "fibre.guard.gloss=0.5",
+        "fibre.guard.roughness=0.5",
     ];
     for colour in colours {
         let Ok(preset) = preset("fox", &[]).with_settings(&[colour.to_owned()]) else { panic!("{colour}") };
