@@ -33,8 +33,8 @@ struct Ended {
     fault: Option<(u64, String)>,
 }
 
-/// Runs the cases `first` to `first + count` of a target in a process of their own.
-fn run(target: &str, first: u64, count: u64) -> Ended {
+/// Runs the cases `first` to `first + count` of a target in a process of their own, none for longer than `longest`.
+fn run(target: &str, first: u64, count: u64, longest: Duration) -> Ended {
     let this = std::env::current_exe().expect("this program");
     let script = format!("ulimit -v {MOST_MEMORY_KIB}; exec \"$0\" --exact fuzz::the_process_of_cases --nocapture");
     let mut child = Command::new("bash")
@@ -68,7 +68,7 @@ fn run(target: &str, first: u64, count: u64) -> Ended {
             Err(RecvTimeoutError::Timeout) => {
                 let waited = began.0.elapsed();
                 let busy = computed(child.id()).map_or(waited, |now| now.saturating_sub(began.1));
-                if busy < LONGEST && waited < LONGEST_WAIT {
+                if busy < longest && waited < LONGEST_WAIT {
                     continue;
                 }
                 hung = true;
@@ -82,7 +82,7 @@ fn run(target: &str, first: u64, count: u64) -> Ended {
     reader.join().expect("its output was read");
     let text = teller.join().expect("its errors were read");
     let fault = match (hung, status.success()) {
-        (true, _) => Some(format!("takes more than {} s", LONGEST.as_secs())),
+        (true, _) => Some(format!("takes more than {} s", longest.as_secs())),
         (_, false) => Some(format!("{status}: {}", text.lines().take(12).collect::<Vec<_>>().join(" | "))),
         _ => None,
     };
@@ -120,7 +120,7 @@ fn try_all(name: &str, count: u64) {
     let longest = Duration::from_secs(seconds.unwrap_or(0));
     let (start, mut first, mut accepted, mut faults) = (Instant::now(), 0, 0, Vec::new());
     loop {
-        let ended = run(name, first, count);
+        let ended = run(name, first, if seconds.is_none() { count - first } else { count }, LONGEST);
         accepted += ended.accepted;
         first += ended.tried.max(1);
         faults.extend(ended.fault.map(|(case, fault)| format!("{name} {case}: {fault}")));
@@ -194,8 +194,10 @@ fn an_exr_that_claims_a_huge_size_is_refused() {
 
 #[test]
 fn planted_faults_are_seen() {
-    for (target, told) in [("panics", "planted"), ("grows", "memory"), ("leaves", "left behind"), ("hangs", "20 s")] {
-        let ended = run(target, 3, 1);
+    for (target, told) in
+        [("panics", "planted"), ("grows", "memory"), ("leaves", "left behind"), ("hangs", "more than 2 s")]
+    {
+        let ended = run(target, 3, 1, Duration::from_secs(2));
         let (case, fault) = ended.fault.unwrap_or_else(|| panic!("{target} was not seen"));
         assert!(case == 3 && fault.contains(told), "{case}: {fault}");
     }
