@@ -40,12 +40,14 @@ const MAX_LEVEL_BYTES: u64 = 1 << 28;
 const LEVELS: [usize; 3] = [40, 80, 24];
 
 fn open(bytes: &[u8]) -> Result<Transcoder<'_>, String> {
-    // The decoder makes room for whatever a level claims.
+    // The decoder trusts a level's place, and makes room for whatever it claims.
     let [count_at, index_at, step] = LEVELS;
-    let count = bytes.get(count_at..count_at + 4).and_then(|b| b.try_into().ok()).map_or(0, u32::from_le_bytes);
-    for level in 0..count.clamp(1, 32) as usize {
-        let at = index_at + level * step + 16;
-        let claimed = bytes.get(at..at + 8).and_then(|b| b.try_into().ok()).map_or(0, u64::from_le_bytes);
+    let long = |at: usize| bytes.get(at..at + 8).and_then(|b| b.try_into().ok()).map_or(0, u64::from_le_bytes);
+    for level in 0..(long(count_at) as u32).clamp(1, 32) as usize {
+        let [offset, length, claimed] = [0, 8, 16].map(|field| long(index_at + level * step + field));
+        if offset.checked_add(length).is_none_or(|end| end > bytes.len() as u64) {
+            return Err(format!("level {level} reaches beyond its end"));
+        }
         if claimed > MAX_LEVEL_BYTES {
             return Err(format!("level {level} claims {claimed} bytes"));
         }
