@@ -74,7 +74,8 @@ pub(super) fn tile_of(
 fn baked(hair: &Hair, recipe: &TileRecipe, steps: &mut Steps<'_>) -> Tile {
     let grown = hair.grown(steps);
     let [guard, undercoat] = hair.fibres.each_ref().map(Fibre::colourless);
-    let ends = steps.key("tile-ends", &(guard, hair.seed, recipe.shells, grown.height_m));
+    // Where a level's slabs end hangs on all hair.
+    let ends = steps.key("tile-ends", &(guard, undercoat, hair.seed, recipe.shells));
     let gains = steps.key("tile-gains", &(guard, undercoat, hair.seed, recipe.shells, recipe.lean_deg));
     let mut told = RaysTold { ends: steps.find(ends.as_ref()), gains: steps.find(gains.as_ref()) };
     let known = told.clone();

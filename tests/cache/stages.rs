@@ -164,7 +164,7 @@ fn what_changes_more_than_colour_is_made_again() {
         ("guard.shape.bend_deg=3", [true, true]),
         ("guard.density_per_cm2=50", [true, true]),
         ("shells.layers=5", [true, true]),
-        ("undercoat.density_per_cm2=300", [false, true]),
+        ("undercoat.density_per_cm2=300", [true, true]),
         ("groom.lean_deg=11", [false, true]),
         ("fins.thickness_mm=1", [false, false]),
     ] {
