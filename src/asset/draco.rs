@@ -32,6 +32,9 @@ struct Stream {
     indices: Option<usize>,
 }
 
+/// A mesh and one of its primitives.
+type Place = (usize, usize);
+
 /// Replaces every compressed primitive by what it decodes to and drops the extension.
 ///
 /// # Errors
@@ -60,7 +63,7 @@ pub fn decode(document: &mut Document, warnings: &mut Vec<String>) -> Result<()>
 }
 
 /// The compressed primitives, and those whose accessors have data beside the stream.
-fn streams(document: &Document) -> Result<(Vec<Stream>, Vec<(usize, usize)>)> {
+fn streams(document: &Document) -> Result<(Vec<Stream>, Vec<Place>)> {
     let (mut streams, mut plain) = (Vec::new(), Vec::new());
     let accessors = document.count("accessors");
     for (mesh, at) in document.root().list("meshes")?.iter().enumerate() {

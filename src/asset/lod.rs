@@ -5,6 +5,9 @@ use super::json::At;
 use crate::error::Result;
 use std::collections::BTreeMap;
 
+/// The node above, and the name without its level.
+type Name = (Option<usize>, String);
+
 /// Which nodes show a coarser level of something that another node shows finer, and what to tell of it.
 #[derive(Clone, Debug, Default)]
 pub struct Levels {
@@ -22,7 +25,7 @@ impl Levels {
     pub fn of(nodes: &[At<'_>], document: &Document, parent: &[Option<usize>], order: &[usize]) -> Result<Self> {
         let mut levels = Self { coarser: vec![false; nodes.len()], notes: Vec::new() };
         // What stands side by side has one name but for the level.
-        let mut groups: BTreeMap<(Option<usize>, String), Vec<(u32, usize)>> = BTreeMap::new();
+        let mut groups: BTreeMap<Name, Vec<(u32, usize)>> = BTreeMap::new();
         for (node, at) in nodes.iter().enumerate() {
             if let Some((stem, level)) = name_of(at, document).as_deref().and_then(level_of) {
                 // A name that is nothing but a level means something beside its siblings alone.

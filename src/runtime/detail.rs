@@ -19,9 +19,9 @@ impl Detail {
     }
 
     /// Of a stack that is `height_px` high, whose levels past the finest suffice up to `most_px` each.
-    pub fn of(height_px: f32, most_px: impl Iterator<Item = f32> + Clone) -> Self {
+    pub fn of(height_px: f32, mut most_px: impl Iterator<Item = f32> + Clone) -> Self {
         let finer = most_px.clone().take_while(|most| height_px <= *most).count();
-        let next = most_px.skip(finer).next();
+        let next = most_px.nth(finer);
         let coarser = next.map_or(0.0, |most| (EARLY * most / height_px).max(1.0).ln() / EARLY.ln());
         Self { finer, coarser: coarser.min(0.999) }
     }

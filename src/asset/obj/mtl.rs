@@ -210,7 +210,7 @@ impl Map {
             return Err(format!("texture {name:?} is not in the input's folder"));
         };
         let bytes = uri::read_file(&folder.join(&path)).map_err(|error| format!("texture {name:?}: {}", error.what))?;
-        if !image::media_type(&bytes).is_some_and(|media| media != "image/ktx2") {
+        if image::media_type(&bytes).is_none_or(|media| media == "image/ktx2") {
             return Err(format!("texture {name:?} is neither PNG, JPEG nor WebP; save it as one of these"));
         }
         let path = path.to_string_lossy().replace('\\', "/");
