@@ -22,6 +22,13 @@ if [ -n "$monkey" ]; then
     "$furrier" view furry.glb --screenshot "$images/monkey.png" --orbit 25,10,1 --size 800x640
 fi
 
+# docs/recipes.md
+cp "$images"/../recipes/* .
+"$furrier" bake sample:creature -o painted.glb --set maps.length=length.png --set guard.length.mm=75 --set undercoat.length.mm=40
+"$furrier" view painted.glb --screenshot "$images/recipes/painted.png" --orbit 65,10,1 --size 480x400
+"$furrier" bake sample:creature -o leopard.glb --preset short-cat --set maps.colour=spots.png
+"$furrier" view leopard.glb --screenshot "$images/recipes/leopard.png" --orbit 50,10,1 --size 480x400
+
 # docs/steps/patch.md, docs/steps/field.md
 "$furrier" view creature.glb --screenshot "$images/patches.png" --show patches --orbit 50,10,1 --size 800x640
 "$furrier" view creature.glb --screenshot "$images/field.png" --show field --orbit 50,10,1 --size 800x640
