@@ -104,8 +104,13 @@ fn fill(document: &mut Document, stream: &Stream, decoded: &Mesh, filled: &mut B
     for (name, id, accessor) in &stream.attributes {
         let attribute =
             decoded.attribute_by_unique_id(*id).ok_or_else(|| fault(stream, &format!("it has no {name}")))?;
-        let (component, bytes) = elements(attribute, points)
+        let (component, mut bytes) = elements(attribute, points)
             .ok_or_else(|| fault(stream, &format!("its {name} is cut or of another type")))?;
+        // Weights that were rounded for the stream no longer sum to 1, as they must.
+        let sets = stream.attributes.iter().filter(|(name, ..)| name.starts_with("WEIGHTS_")).count();
+        if name.starts_with("WEIGHTS_") && sets == 1 && component == 5126 {
+            normalise(&mut bytes);
+        }
         let stated = document.root().entry("accessors", *accessor)?;
         let kind = stated.need("type")?;
         let components = usize::from(attribute.num_components());
@@ -190,6 +195,19 @@ fn elements(attribute: &PointAttribute, points: usize) -> Option<(u32, Vec<u8>)>
         bytes.extend_from_slice(data.get(at..at.checked_add(element)?)?);
     }
     Some((component, bytes))
+}
+
+/// Scales quadruples of floats so that each sums to 1.
+fn normalise(bytes: &mut [u8]) {
+    for four in bytes.as_chunks_mut::<16>().0 {
+        let weights: [f32; 4] = std::array::from_fn(|i| f32::from_le_bytes(std::array::from_fn(|b| four[4 * i + b])));
+        let sum: f32 = weights.iter().sum();
+        if sum > 0.0 && sum.is_finite() {
+            for (bytes, weight) in four.as_chunks_mut::<4>().0.iter_mut().zip(weights) {
+                *bytes = (weight / sum).to_le_bytes();
+            }
+        }
+    }
 }
 
 fn bounds(bytes: &[u8]) -> [Vec3; 2] {
