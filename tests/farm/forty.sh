@@ -31,13 +31,17 @@ for preset in "${presets[@]}"; do
   mkdir -p "$work/single/$preset"
   for input in "${inputs[@]}"; do
     name=$(basename "$input")
-    "$furrier" -q bake "$input" -o "$work/single/$preset/${name%.*}.glb" --preset "$preset" --threads 1 >"$work/log" || cat "$work/log"
+    "$furrier" -q bake "$input" -o "$work/single/$preset/${name%.*}.glb" --preset "$preset" --threads 1 --no-cache >"$work/log" || cat "$work/log"
   done
 done
 echo "40 single bakes with one thread each: $(since "$start") s"
 
+timed "$furrier" -q batch "$work/library" --threads "$threads" --memory "$memory" --no-cache >"$work/log"
+echo "batch, $threads threads, --memory $memory, no cache: $(cat "$work/time")"
+rm -rf "$work/library/furry" "$work/library/.furrier"
+export FURRIER_CACHE="$work/cache"
 timed "$furrier" -q batch "$work/library" --threads "$threads" --memory "$memory" >"$work/log"
-echo "batch, $threads threads, --memory $memory: $(cat "$work/time")"
+echo "batch, $threads threads, --memory $memory, an empty cache: $(cat "$work/time")"
 diff -r "$work/single" "$work/library/furry" && echo "the same bytes"
 
 timed "$furrier" -q batch "$work/library" --threads "$threads" >"$work/log"
