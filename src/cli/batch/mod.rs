@@ -48,7 +48,7 @@ pub struct Batch {
     #[command(subcommand)]
     what: Option<What>,
     #[command(flatten)]
-    library: LibraryArgs,
+    assets: LibraryArgs,
     #[command(flatten)]
     limits: LimitArgs,
     /// Stop at the first failure; what is under way is finished
@@ -71,8 +71,8 @@ pub struct Batch {
 #[derive(Debug, Args)]
 pub struct LibraryArgs {
     /// A folder, several files, or a furrier.toml. A folder with a furrier.toml in it is baked by that
-    #[arg(required = true)]
-    library: Vec<PathBuf>,
+    #[arg(required = true, value_name = "LIBRARY")]
+    inputs: Vec<PathBuf>,
     /// The folder to write to. Default: furry in the library's folder, or here for several files
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
@@ -106,7 +106,7 @@ impl Batch {
         self.ending.check()?;
         let limits = self.limits.limits(self.fail_fast);
         if self.dry_run {
-            return dry_run(&self.library.plan()?, limits.threads, console);
+            return dry_run(&self.assets.plan()?, limits.threads, console);
         }
         let bake = |plan: &Plan| {
             let started = Instant::now();
@@ -116,9 +116,9 @@ impl Batch {
             self.ending.end(plan, outcomes, Some(started.elapsed().as_secs_f64()), told, console)
         };
         if self.watch {
-            return watch::watch(&self.library, console, &bake);
+            return watch::watch(&self.assets, console, &bake);
         }
-        bake(&self.library.plan()?)
+        bake(&self.assets.plan()?)
     }
 }
 
@@ -130,13 +130,13 @@ impl LibraryArgs {
     pub fn plan(&self) -> Result<Plan> {
         let choices = self.recipe.choices();
         let chosen = choices != crate::bake::recipe::Choices::default();
-        library::open(&self.library, &choices, self.output.as_deref(), chosen)
+        library::open(&self.inputs, &choices, self.output.as_deref(), chosen)
     }
 
     /// Folders with what is baked, and with the files of presets.
     fn folders(&self) -> Vec<PathBuf> {
         let folder = |path: &PathBuf| if path.is_dir() { path.clone() } else { beside(path) };
-        self.library.iter().map(folder).chain(self.recipe.preset_files().iter().map(|file| beside(file))).collect()
+        self.inputs.iter().map(folder).chain(self.recipe.preset_files().iter().map(|file| beside(file))).collect()
     }
 }
 

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub struct PlanCommand {
     #[command(flatten)]
-    library: LibraryArgs,
+    assets: LibraryArgs,
     /// The plan to write: lines of JSON, the first about the library, one per asset after it
     #[arg(long, value_name = "PLAN.jsonl")]
     write: PathBuf,
@@ -25,7 +25,7 @@ impl PlanCommand {
     /// Where the library cannot be used, or the file not be written.
     pub fn run(self, console: &Console) -> Result<()> {
         output::check(&self.write, &[])?;
-        let plan = self.library.plan()?.with_costs();
+        let plan = self.assets.plan()?.with_costs();
         plan.write(&self.write)?;
         let seconds: f64 = plan.entries.iter().filter_map(|entry| entry.cost).map(|cost| cost.seconds).sum();
         let value =

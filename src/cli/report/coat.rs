@@ -62,7 +62,7 @@ impl Coat {
         let mut keep = self.subject.keep()?;
         let progress = console.progress();
         progress.step("bake");
-        let (coat_key, file) = self.subject.baked(&preset, &mut keep, console)?;
+        let (coat_key, file) = self.subject.baked(&mut keep, console)?;
         let sight = Sight { coat: coat_key, fur: self.subject.picture(preset), device, size, lights, distances };
         let seen = measure(&file, sight, &mut keep, &mut |what| progress.step(what))?;
         let Seen { report, fur, adapter } = seen;

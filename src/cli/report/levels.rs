@@ -67,7 +67,7 @@ impl Levels {
         let mut keep = subject.keep()?;
         let progress = console.progress();
         progress.step("bake");
-        let (_, file) = subject.baked(&preset, &mut keep, console)?;
+        let (_, file) = subject.baked(&mut keep, console)?;
         let (asset, coat) = read_coat(&file)?;
         progress.step("grow");
         let fur = Fur::new(subject.picture(preset.clone()), device.clone(), size)?;

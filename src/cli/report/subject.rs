@@ -2,8 +2,9 @@
 
 use crate::asset::Reading;
 use crate::asset::coat::Fallback;
+use crate::bake::bake;
 use crate::bake::picture::{Only, PictureRequest};
-use crate::bake::{Method, Request, bake};
+use crate::bake::recipe::Choices;
 use crate::cli::console::Console;
 use crate::cli::recipe::{LayoutName, UnitName};
 use crate::cli::stage::size;
@@ -98,37 +99,25 @@ impl Subject {
     ///
     /// # Errors
     /// As [`bake`].
-    pub fn baked(&self, preset: &Preset, keep: &mut Keep, console: &Console) -> Result<(Key, PathBuf)> {
-        let mut preset = preset.clone();
-        preset.shells.layers = self.layers.unwrap_or(preset.shells.layers);
-        preset.shells.texture_size = self.texture_size.unwrap_or(preset.shells.texture_size);
-        let preset = preset.checked()?;
-        let method = match self.parameterisation {
-            LayoutName::Lapped => Method::Lapped,
-            LayoutName::Atlas => Method::Atlas { texels: self.texture_size },
-            LayoutName::Uv => Method::Uv(0),
+    pub fn baked(&self, keep: &mut Keep, console: &Console) -> Result<(Key, PathBuf)> {
+        let recipe = Choices {
+            presets: vec![self.preset.clone()],
+            settings: self.settings.clone(),
+            materials: self.materials.clone(),
+            units: self.units.units(),
+            layout: self.parameterisation.layout(),
+            layers: self.layers,
+            texture_size: self.texture_size,
+            seed: self.seed,
+            fallback: Fallback::None,
+            ..Choices::default()
         };
-        let key = Key::default().program()?.asset(&self.input)?.preset(&preset)?;
-        let key = key.with((&self.materials, self.units.units(), method, self.seed));
+        let recipe = recipe.recipe()?;
+        let key = Key::default().program()?.asset(&self.input)?.preset(&recipe.preset)?;
+        let key = key.with((&recipe.materials, recipe.units, recipe.method, recipe.seed));
         let out = keep.coat_file(key);
         if !out.is_file() {
-            let baked = bake(
-                &Request {
-                    input: self.input.clone(),
-                    reading: Reading::default(),
-                    out: out.clone(),
-                    preset,
-                    presets: Vec::new(),
-                    materials: self.materials.clone(),
-                    units: self.units.units(),
-                    method,
-                    seed: self.seed,
-                    fallback: Fallback::None,
-                    judge: false,
-                    cache: None,
-                },
-                &mut |_| {},
-            )?;
+            let baked = bake(&recipe.request(&self.input, &out, false), &mut |_| {})?;
             baked.warnings.iter().for_each(|warning| console.warning(warning));
         }
         Ok((key, out))
