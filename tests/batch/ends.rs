@@ -3,6 +3,7 @@
 use super::{batch, furrier, json, outputs, said, single, small, succeeds, triangle, triangles};
 use crate::common::shared;
 use serde_json::{Value, json};
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::Stdio;
@@ -76,12 +77,38 @@ fn six_hard_files_fail_among_others() {
     for name in hard {
         std::fs::copy(shared.join("hard").join(name), folder.path().join(name)).unwrap();
     }
-    let (code, value) = json(&mut batch(folder.path(), &[]));
-    let mut named: Vec<_> = value["failed"].as_array().unwrap().iter().map(|f| f["input"].as_str().unwrap()).collect();
-    named.sort_unstable();
-    let mut hard = hard.to_vec();
-    hard.sort_unstable();
-    assert_eq!((code, &value["baked"], named), (6, &json!(2), hard), "{value}");
+    let out = tempfile::tempdir().unwrap();
+    let (junit, report) = (out.path().join("junit.xml"), out.path().join("report"));
+    let mut command = batch(folder.path(), &[]);
+    command.arg("--junit").arg(&junit).arg("--report").arg(&report);
+    let (code, value) = json(&mut command);
+    let failed = value["failed"].as_array().unwrap();
+    let reasons: BTreeMap<&str, &str> =
+        failed.iter().map(|f| (f["input"].as_str().unwrap(), f["error"].as_str().unwrap())).collect();
+    assert_eq!((code, &value["baked"]), (6, &json!(2)), "{value}");
+    assert_eq!(reasons.keys().copied().collect::<BTreeSet<_>>(), BTreeSet::from(hard), "{value}");
+    // Each is named with its reason wherever a run tells of itself.
+    let ended = batch(folder.path(), &["--jsonl"]).output().unwrap();
+    let lines = String::from_utf8(ended.stdout).unwrap();
+    let told: BTreeMap<String, String> = lines
+        .lines()
+        .map(|line| serde_json::from_str::<Value>(line).unwrap())
+        .filter(|event| event["event"] == "end" && event["fault"].is_object())
+        .map(|event| [&event["input"], &event["fault"]["reason"]].map(|v| v.as_str().unwrap().to_owned()).into())
+        .collect();
+    let table = said(&batch(folder.path(), &[]).output().unwrap());
+    let [xml, page] = [junit, report.join("index.html")].map(|file| std::fs::read_to_string(file).unwrap());
+    let plain = |text: &str| {
+        let signs = [("&quot;", "\""), ("&#34;", "\""), ("&apos;", "'"), ("&#39;", "'"), ("&lt;", "<"), ("&gt;", ">")];
+        signs.iter().fold(text.to_owned(), |text, (from, to)| text.replace(from, to)).replace("&amp;", "&")
+    };
+    for (name, reason) in reasons {
+        assert_eq!(told.get(name).map(String::as_str), Some(reason), "events: {lines}");
+        assert!(table.contains(&format!("{name}: {reason}")), "table: {name}: {reason}\n{table}");
+        for (place, text) in [("JUnit", plain(&xml)), ("page", plain(&page))] {
+            assert!(text.contains(name) && text.contains(reason), "{place}: {name}: {reason}\n{text}");
+        }
+    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Many assets: what is baked and why, what an interrupted or refused run leaves behind, and that outputs are those of single bakes.
 
+mod browser;
 mod decisions;
 mod ends;
 mod epoch;
