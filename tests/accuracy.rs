@@ -149,7 +149,7 @@ fn strand_directions(hair: &TileHair, slabs: usize) -> Vec<Vec3> {
 fn worst_tangent_deg(hair: &TileHair, lean_deg: f32, fault: Mat3) -> f32 {
     let tile = bake(hair, &recipe(lean_deg));
     let stack = Stack::new(&tile);
-    let truth = strand_directions(hair, 15);
+    let truth = strand_directions(hair, tile.shells.slabs.count());
     let most = truth.iter().map(|t| t.length()).fold(0.0, f32::max);
     let seen = Incidence::new(Vec3::NEG_Z, Mat3::IDENTITY, 1.0);
     let worn = leaning(lean_deg);

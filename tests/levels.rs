@@ -59,7 +59,7 @@ fn coverages(tile: &Tile, level: usize) -> [f32; 3] {
 fn levels_halve_and_hide_as_much_as_the_finest() {
     let tile = bake(&hair(true, Shape::default()), &recipe(0.0));
     let counts: Vec<usize> = (0..=tile.levels.len()).map(|i| tile.at_level(i).shells.slabs.count()).collect();
-    assert_eq!(counts, [15, 7, 3, 1]);
+    assert_eq!(counts, [12, 6, 3, 1]);
     assert!(tile.levels.windows(2).all(|pair| pair[0].most_px > pair[1].most_px));
     let finest = coverages(&tile, 0);
     let off = |tile: &Tile, level: usize| {

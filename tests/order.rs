@@ -1,4 +1,4 @@
-//! In which order a coat is drawn, and what of it: rays through furred spheres meet what is drawn from the last to the first.
+//! In which order a coat is drawn, and what of it: rays through furred spheres meet what is drawn from the first to the last.
 
 use crate::{coats, runtime};
 use furrier::data::coat::Tile;
@@ -81,7 +81,7 @@ fn items(order: &Order) -> Vec<(usize, Item)> {
             .map(|&item| (run.fur, item))
             .collect::<Vec<_>>()
     };
-    order.runs.iter().flat_map(of).collect()
+    order.pieces.iter().flatten().flat_map(of).collect()
 }
 
 /// Rays over the picture, towards both spheres and beside them.
@@ -91,33 +91,33 @@ fn rays() -> Vec<Vec3> {
     (-12..=12).flat_map(|i| (-12..=12).map(move |j| at(i, j))).collect()
 }
 
-/// Pairs of neighbours on rays that come from front to back, of all pairs.
+/// Pairs of neighbours on rays that come from back to front, of all pairs.
 fn wrong(furs: &[&Sighted], order: &[(usize, Item)]) -> (usize, usize) {
     let eye = frame().eye.truncate();
     let (mut wrong, mut all) = (0, 0);
     for ray in rays() {
         let met = met(eye, ray, furs, order);
         all += met.len().saturating_sub(1);
-        wrong += met.windows(2).filter(|pair| pair[1].0 > pair[0].0 + 1e-4).count();
+        wrong += met.windows(2).filter(|pair| pair[1].0 < pair[0].0 - 1e-4).count();
     }
     (wrong, all)
 }
 
 #[test]
-fn a_coat_is_drawn_from_back_to_front() {
+fn a_coat_is_drawn_from_front_to_back() {
     let ball = sphere(Vec3::ZERO, 0.0);
     let order = Order::of(&[&ball], &frame(), 1, Show::default());
     let (backward, all) = wrong(&[&ball], &items(&order));
-    println!("{backward} of {all} pairs come from front to back");
+    println!("{backward} of {all} pairs come from back to front");
     assert!(all > 1000 && backward * 100 <= all, "{backward} of {all}");
-    // The planted fault: shells of the near side from the outermost on.
+    // The planted fault: shells of the near side from the innermost on.
     let mut planted = items(&order);
     planted.reverse();
     assert!(wrong(&[&ball], &planted).0 * 2 > all);
 }
 
 #[test]
-fn a_near_limb_lies_over_what_is_behind_it() {
+fn a_near_limb_comes_before_what_is_behind_it() {
     // Along the view, a whole sphere apart.
     let to_eye = frame().eye.truncate().normalize();
     let (near, far) = (sphere(to_eye * 0.1, 0.0), sphere(to_eye * -0.1 + Vec3::X * 0.03, 0.0));
@@ -129,10 +129,10 @@ fn a_near_limb_lies_over_what_is_behind_it() {
         let pairs = met.windows(2).filter(|pair| pair[0].1 != pair[1].1);
         for pair in pairs {
             both += 1;
-            over += usize::from(pair[1].1 == 0);
+            over += usize::from(pair[0].1 == 0);
         }
     }
-    println!("{over} of {both} times the near one comes later");
+    println!("{over} of {both} times the near one comes first");
     assert!(both > 10 && over * 10 >= both * 9, "{over} of {both}");
 }
 

@@ -1,7 +1,7 @@
 // Fins: quads on edges near the silhouette, with hair seen from the side (Lengyel et al. 2001 §2.3).
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
-#import furrier::items::{items, uncovered, shadow_reads, PAINTED_READS}
+#import furrier::items::{items, uncovered, shadow_reads, read_root, root_level}
 #import furrier::lights::{Hair, Key, lit_by_all}
 #import furrier::shading::{past_skin, way_up}
 #import furrier::law::{cos_of, lit_by_sky, seen_of, worn_of}
@@ -12,8 +12,8 @@
 
 // Whether it is drawn, or 4 for what it costs: fragments in red, reads of texels in green.
 override MEASURE: u32 = 0u;
-// Reads of both textures of a fin, at the most.
-const FIN_READS: f32 = 8.0;
+// Reads of both textures of a fin.
+const FIN_READS: f32 = 2.0;
 // Least of how wide apart hair stands over a hollow, or texels of next to nothing would be opaque.
 const LEAST_SPREAD: f32 = 0.5;
 // Texels along the edge per texel along the hair that one fetch may average.
@@ -125,11 +125,11 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let root_dy = dpdy(in.root);
     var root = Root(1.0, 1.0);
     if paint.has_painted > 0u {
-        root = root_of(textureSampleGrad(painted_texture, painted_sampler, in.root.zw, 0, root_dx.zw, root_dy.zw), in.longest);
+        root = root_of(read_root(painted_texture, painted_sampler, in.root.zw, root_dx.zw, root_dy.zw), in.longest);
     }
     var tint = in.tint;
     if paint.has_colour > 0u {
-        tint = vec4(tint.rgb * textureSampleGrad(colour_texture, colour_sampler, in.root.xy, 0, root_dx.xy, root_dy.xy).rgb, tint.w);
+        tint = vec4(tint.rgb * read_root(colour_texture, colour_sampler, in.root.xy, root_dx.xy, root_dy.xy).rgb, tint.w);
     }
     // Shorter hair ends lower: the texture is squeezed to it.
     let squeeze = 1.0 / max(root.share, 1e-6);
@@ -139,14 +139,15 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let offset_m = in.offset_m * root.share;
     let near = nearness(max(abs(uv_dx.x), abs(uv_dy.x)));
     let near_outline = at_outline(in.cos_view, near);
-    let root_reads = PAINTED_READS * f32(paint.has_painted + paint.has_colour);
+    let root_reads = f32(paint.has_painted + paint.has_colour);
     if near_outline <= 0.0 {
         return select(vec4(0.0), vec4(1.0, root_reads, 0.0, 0.0), MEASURE == 4u);
     }
     let texels = vec2(length(vec2(uv_dx.x, uv_dy.x)), length(vec2(uv_dx.y, uv_dy.y))) * size;
     let narrowed = vec2(min(1.0, MAX_STRETCH * max(texels.y, 1.0) / max(texels.x, 1e-6)), 1.0);
-    let surface = textureSampleGrad(fin_albedo, fin_sampler, uv, 0, uv_dx * narrowed, uv_dy * narrowed);
-    let medium = textureSampleGrad(fin_tangent, fin_sampler, uv, 0, uv_dx * narrowed, uv_dy * narrowed);
+    let level = root_level(uv_dx * narrowed * size, uv_dy * narrowed * size);
+    let surface = textureSampleLevel(fin_albedo, fin_sampler, uv, 0, level);
+    let medium = textureSampleLevel(fin_tangent, fin_sampler, uv, 0, level);
     if uv.y < 0.0 {
         return select(vec4(0.0), vec4(1.0, root_reads + FIN_READS, 0.0, 0.0), MEASURE == 4u);
     }

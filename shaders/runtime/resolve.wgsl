@@ -1,5 +1,6 @@
 // Many samples to one pixel: a box filter in linear light, and the nearest depth.
 #import furrier::whole::whole_target
+#import furrier::constants::FULL
 
 @group(0) @binding(0) var samples: texture_2d<f32>;
 @group(0) @binding(1) var depths: texture_depth_2d;
@@ -26,8 +27,10 @@ fn fragment(@builtin(position) at: vec4<f32>) -> Pixel {
     var nearest = 1.0;
     for (var y = 0u; y < SAMPLES; y++) {
         for (var x = 0u; x < SAMPLES; x++) {
-            sum += textureLoad(samples, first + vec2(x, y), 0);
             let at_sample = first + vec2(x, y);
+            let light = textureLoad(samples, at_sample, 0);
+            // What was left out behind it looks like what lies before.
+            sum += select(light, light / light.a, light.a >= FULL);
             nearest = min(nearest, min(textureLoad(depths, at_sample, 0), textureLoad(edges, at_sample, 0).x));
         }
     }

@@ -2,7 +2,7 @@
 // where the ray passes its middle.
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
-#import furrier::items::{items, uncovered, shadow_reads, PAINTED_READS}
+#import furrier::items::{items, uncovered, shadow_reads, read_root}
 #import furrier::lights::{Hair, Key, lit_by_all}
 #import furrier::shading::{past_border, past_skin, way_to_border, way_up}
 #import furrier::law::{lit_by_sky, seen_of, worn_of}
@@ -29,8 +29,11 @@ const OPAQUE: f32 = 4.0;
 const LOOK: u32 = 0u;
 // Lengths of hair from the coat's end up to which light comes in there, and from which on it does not.
 const BESIDE: vec2<f32> = vec2(1.0, 2.0);
-// Taps of the far side, which lies behind the near one and can do with fewer.
-const FAR_TAPS: f32 = 4.0;
+// Taps at the most where no single hair is told apart, as many layers are averaged anyway: of the upper half of a stack, of the lower, which
+// is seen through it, and of the far side.
+const UPPER_TAPS: f32 = 4.0;
+const LOWER_TAPS: f32 = 2.0;
+const FAR_TAPS: f32 = 1.0;
 
 @group(2) @binding(0) var<storage, read> vertices: array<CoatVertex>;
 @group(2) @binding(1) var<storage, read> indices: array<u32>;
@@ -224,13 +227,15 @@ fn place_of(in: Varyings, offset_m: vec3<f32>, uv_dx: vec2<f32>, uv_dy: vec2<f32
     return Place(skin_normal, world_ray, at, ray, sweep, bend_per_m, skin, rise, in.uv, uv_dx, uv_dy);
 }
 
-fn met(place: Place, slab: Filled, near_side: bool) -> Met {
+fn met(place: Place, slab: Filled, near_side: bool, near: f32) -> Met {
     let path_m = path_through_slab(place.ray, slab.slab_m, place.bend_per_m);
     let inwards = select(-0.5, 0.5, near_side) * path_m;
     let uv = place.uv + inwards * place.sweep.direction.xy / tile.edge_m;
 
     let run = run_through_slab(place.sweep, path_m, slab.slab_m, slabs[slab.layer].slope);
-    var spot = footprint(place.uv_dx, place.uv_dy, run, select(FAR_TAPS, MOST_TAPS, near_side));
+    let from_afar = select(FAR_TAPS, select(LOWER_TAPS, UPPER_TAPS, slabs[slab.layer].top > 0.5), near_side);
+    let most_taps = floor(mix(from_afar, select(4.0 * FAR_TAPS, MOST_TAPS, near_side), min(2.0 * near, 1.0)));
+    var spot = footprint(place.uv_dx, place.uv_dy, run, most_taps);
     var gain_level = footprint(place.uv_dx, place.uv_dy, vec2(0.0), MOST_TAPS).level;
     if MEASURE == 1u || MEASURE == 2u {
         // The mean of the tile: no gap between two hairs counts as bald.
@@ -262,13 +267,13 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     // What is painted where the hair has its root: below, along the offset. Texels that were sampled on the skin hold it.
     var root = Root(1.0, 1.0);
     if PAINTED && paint.has_painted > 0u && tile.tinted > 0.5 {
-        root = root_of(textureSampleGrad(painted_texture, painted_sampler, in.root.zw, 0, root_dx.zw, root_dy.zw), in.longest);
+        root = root_of(read_root(painted_texture, painted_sampler, in.root.zw, root_dx.zw, root_dy.zw), in.longest);
     }
     var slab = Filled(i32(in.layer.x), (slabs[in.layer.x].top - slabs[in.layer.x].bottom) * tile.height_m, 1.0);
     if PAINTED {
         slab = filled_slab(in.layer.x, root.share);
     }
-    let painted_reads = select(0.0, PAINTED_READS, PAINTED && paint.has_painted > 0u && tile.tinted > 0.5);
+    let painted_reads = select(0.0, 1.0, PAINTED && paint.has_painted > 0u && tile.tinted > 0.5);
     if slab.slabs <= 0.0 && MEASURE == 3u {
         discard;
     }
@@ -288,7 +293,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         }
         var expected = 0.0;
         for (var layer = 1u; layer < tile.layers; layer++) {
-            expected += met(place, filled_slab(layer, root.share), true).depth * present;
+            expected += met(place, filled_slab(layer, root.share), true, 1.0).depth * present;
         }
         return uncovered(in.clip) * vec4(0.0, min(expected, OPAQUE), 1.0, 0.0);
     }
@@ -296,22 +301,26 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let look = layer_looks[u32(slab.layer)];
     let scale_m = look.scale * tile.height_m;
     let to_eye = -place.world_ray;
-    let found = met(place, slab, near_side);
-    let medium = found.medium;
     let near = nearness(max(length(uv_dx), length(uv_dy)));
+    let found = met(place, slab, near_side, near);
+    let medium = found.medium;
     let kept = select(1.0, 1.0 - paint.fins * in.y_axis.w * fin_share(dot(place.normal, place.world_ray), near), WITH_FINS);
     let depth = found.depth * present * kept * paint.share;
     if MEASURE == 1u {
         return vec4(min(depth, OPAQUE), 0.0, 0.0, 0.0);
     }
-    let opacity = (1.0 - exp(-depth)) * uncovered(in.clip);
+    var opacity = 1.0 - exp(-depth);
+    let visible = opacity >= INVISIBLE;
+    if visible {
+        opacity *= uncovered(in.clip);
+    }
     if MEASURE == 3u && (opacity < INVISIBLE || !near_side) {
         discard;
     }
     if MEASURE == 4u {
         let coloured = PAINTED && paint.has_colour > 0u && tile.tinted > 0.5;
-        let of_light = 1.0 + select(0.0, PAINTED_READS, coloured) + shadow_reads(HAIR_TAPS);
-        return vec4(1.0, painted_reads + found.reads + 1.0 + select(0.0, of_light, opacity >= INVISIBLE), 0.0, 0.0);
+        let of_light = 1.0 + select(0.0, 1.0, coloured) + shadow_reads(HAIR_TAPS);
+        return vec4(1.0, painted_reads + found.reads + select(0.0, 1.0, visible) + select(0.0, of_light, opacity >= INVISIBLE), 0.0, 0.0);
     }
     if MEASURE == 3u || opacity < INVISIBLE {
         return vec4(0.0);
@@ -321,7 +330,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     if tile.tinted > 0.5 {
         tint = in.tint.rgb;
         if PAINTED && paint.has_colour > 0u {
-            tint *= textureSampleGrad(colour_texture, colour_sampler, in.root.xy, 0, root_dx.xy, root_dy.xy).rgb;
+            tint *= read_root(colour_texture, colour_sampler, in.root.xy, root_dx.xy, root_dy.xy).rgb;
         }
     }
     let at = place.at;

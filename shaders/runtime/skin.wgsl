@@ -13,7 +13,7 @@
 @group(2) @binding(3) var painted_texture: texture_2d_array<f32>;
 
 struct Varyings {
-    @builtin(position) clip: vec4<f32>,
+    @invariant @builtin(position) clip: vec4<f32>,
     // Within the triangle, or a place beyond an outline would stand behind the body, in its shadow.
     @location(0) @interpolate(perspective, centroid) position_m: vec3<f32>,
     @location(1) @interpolate(perspective, centroid) normal: vec3<f32>,
@@ -41,7 +41,7 @@ fn vertex(
 // Whether it is drawn, or 4 for what it costs: fragments in red, reads of texels in green.
 override MEASURE: u32 = 0u;
 // Reads of the tile, of what is painted and of the base colour, at the most that their samplers do.
-const READS: f32 = 21.0;
+const READS: f32 = 13.0;
 // Skin that is seen lies at a border or in a parting, where light finds the way that the eye found.
 const DEEPEST_SKIN: f32 = 1.5;
 

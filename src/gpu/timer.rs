@@ -49,6 +49,16 @@ impl Timer {
         })
     }
 
+    /// What the first and the last of several passes write that count as pass number `pass`.
+    pub fn spanning(&self, pass: u32, first: bool, last: bool) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
+        let writes = self.writes(pass)?;
+        (first || last).then_some(wgpu::RenderPassTimestampWrites {
+            beginning_of_pass_write_index: writes.beginning_of_pass_write_index.filter(|_| first),
+            end_of_pass_write_index: writes.end_of_pass_write_index.filter(|_| last),
+            ..writes
+        })
+    }
+
     /// What compute pass number `pass` writes.
     pub fn compute_writes(&self, pass: u32) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
         self.clock.as_ref().map(|clock| wgpu::ComputePassTimestampWrites {

@@ -1,4 +1,4 @@
-//! In which order a coat is drawn: from back to front.
+//! In which order a coat is drawn: from front to back, in pieces after each of which what is opaque by then hides the rest.
 
 use super::detail::Detail;
 use super::draw_list::{Frame, Show};
@@ -7,6 +7,10 @@ use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 use std::ops::Range;
 
+/// Opacity from which on nothing is drawn behind.
+pub const FULL: f32 = 0.98;
+/// Pieces that a picture is drawn in.
+const PIECES: usize = 24;
 /// Most steps to either side of the eye.
 const MOST_STEPS: f32 = 8e5;
 
@@ -56,19 +60,19 @@ pub struct Run {
 }
 
 /// A picture's items, and runs of them, in the order drawn.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Order {
     /// All items.
     pub items: Vec<Item>,
-    /// Neighbours of one kind, coat, level and look.
-    pub runs: Vec<Run>,
+    /// Pieces of about as many items each, at least one: neighbours of one kind, coat, level and look.
+    pub pieces: Vec<Vec<Run>>,
     /// Which levels are drawn of each coat.
     pub details: Vec<Detail>,
     /// Height of the longest hair in the picture, pixels.
     pub height_px: f32,
 }
 
-/// Where an item comes: steps from the furthest on; within one the far side from its outermost layer, whose rank is minus its number,
+/// Where an item comes, the last being nearest: steps from the furthest on; within one the far side from its outermost layer, whose rank is minus its number,
 /// fins at 0, the near side at twice their numbers (of the finest level; a coarser one's count for as many more); then coats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Place {
@@ -84,8 +88,8 @@ struct Place {
 impl Order {
     /// What `frame` shows of `furs` with `samples` along a pixel's edge.
     ///
-    /// Along a ray through one coat the order is that of layers: the far side, outer to inner; fins; the near side, inner to outer. Of two
-    /// limbs, fur of the near one lies over that of the other. Distances of triangles tell limbs apart, but no layers of one coat, as
+    /// Along a ray through one coat the order is that of layers: the near side, outer to inner; fins; the far side, inner to outer. Of two
+    /// limbs, fur of the near one comes first. Distances of triangles tell limbs apart, but no layers of one coat, as
     /// triangles are larger than layers are thick. So both add up: a layer counts as much as a triangle is long, and half as much on the
     /// far side, where little is seen.
     pub fn of(furs: &[&Sighted], frame: &Frame, samples: u32, show: Show) -> Self {
@@ -134,8 +138,12 @@ impl Order {
             }
         }
         places.par_sort_unstable();
-        let mut order = Self { details, height_px, ..Self::default() };
-        for place in places {
+        let mut order = Self { items: Vec::new(), pieces: vec![Vec::new()], details, height_px };
+        let piece = places.len().div_ceil(PIECES).max(1);
+        for (number, place) in places.into_iter().rev().enumerate() {
+            if number % piece == 0 && number > 0 {
+                order.pieces.push(Vec::new());
+            }
             let fur = place.fur as usize;
             // What stands out as fins is guard hair.
             let look = if place.fins { 0 } else { furs[fur].levels[place.level].looks[place.item.layer() as usize] };
@@ -146,7 +154,8 @@ impl Order {
 
     /// All slabs of every coat's finest level that face the eye, or its skin alone, in no order.
     pub fn all(furs: &[&Sighted], frame: &Frame, samples: u32, skin: bool) -> Self {
-        let mut order = Self { details: vec![Detail::default(); furs.len()], ..Self::default() };
+        let details = vec![Detail::default(); furs.len()];
+        let mut order = Self { items: Vec::new(), pieces: vec![Vec::new()], details, height_px: 0.0 };
         let eye = Eye::of(frame, samples);
         for (number, fur) in furs.iter().enumerate() {
             let sight = &fur.levels[0];
@@ -163,9 +172,10 @@ impl Order {
     fn push(&mut self, fins: bool, (fur, level): (usize, usize), look: usize, item: Item) {
         let end = self.items.len() as u32;
         self.items.push(item);
-        match self.runs.last_mut().filter(|run| (run.fins, run.fur, run.level, run.look) == (fins, fur, level, look)) {
+        let Some(runs) = self.pieces.last_mut() else { return };
+        match runs.last_mut().filter(|run| (run.fins, run.fur, run.level, run.look) == (fins, fur, level, look)) {
             Some(run) => run.items.end = end + 1,
-            None => self.runs.push(Run { fins, fur, level, look, items: end..end + 1 }),
+            None => runs.push(Run { fins, fur, level, look, items: end..end + 1 }),
         }
     }
 }

@@ -20,9 +20,11 @@ pub const ELSEWHERE: &[(&str, &[&str], &str)] = &[
     ("runtime/skin.wgsl", &["vertex", "fragment"], "look.rs compares pixels of skin"),
     ("runtime/caster.wgsl", &["vertex"], SHADOWS),
     ("shared/shadow_map.wgsl", &["key_share"], SHADOWS),
-    ("runtime/items.wgsl", &["uncovered", "shadow_reads"], EDGES),
+    ("runtime/items.wgsl", &["uncovered", "shadow_reads", "read_root", "root_level"], EDGES),
     ("runtime/whole.wgsl", &["whole_target"], "covers a target: all tests of the runtime look through it"),
     ("runtime/edges.wgsl", &["vertex", "fragment"], EDGES),
+    ("runtime/full.wgsl", &["vertex", "fragment"], HIDDEN),
+    ("runtime/under.wgsl", &["vertex", "fragment"], HIDDEN),
     ("runtime/resolve.wgsl", &["vertex", "fragment"], "a mean of samples: all tests of the runtime look through it"),
     ("shared/coat.wgsl", &["fetch"], "samples a texture: twins.rs compares it between texels and mips"),
     (
@@ -67,6 +69,8 @@ pub const ELSEWHERE: &[(&str, &[&str], &str)] = &[
 
 const SHADOWS: &str = "draws and samples the shadow map: shadow_map.rs looks for it in pictures, place by place";
 const EDGES: &str = "finds and reads the skin's edges: runtime.rs looks at a bare edge before fur, and counts reads";
+const HIDDEN: &str =
+    "hides what lies behind opaque hair: runtime.rs counts it, and all tests of the runtime look at what is left";
 const WALKS: &str = "walks the volume as it lies on the device: hybrid_twins.rs compares the pictures pixel by pixel";
 const LISTS: &str = "makes and reads lists of a picture's pixels: hybrid_twins.rs compares the pictures pixel by pixel";
 const COLOURS: &str = "reads what other passes wrote: hybrid_twins.rs compares every layer of the pictures";

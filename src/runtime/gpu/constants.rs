@@ -9,11 +9,12 @@ use crate::data::shell::guards::{
 };
 use crate::gpu::Constant::{self, F32, F32s, U32};
 use crate::runtime::draw_list::MAX_LIGHTS;
+use crate::runtime::order::FULL;
 use crate::runtime::sight::{OUTLINE, TOLD_APART};
 use crate::volume::scene::{DEEPEST_HAIR, HORIZON};
 
 /// The module `furrier::constants` of the runtime's shaders.
-pub const CONSTANTS: [Constant; 23] = [
+pub const CONSTANTS: [Constant; 24] = [
     F32("APART", APART),
     F32("PI", std::f32::consts::PI),
     F32("NEAREST_M", NEAREST_M),
@@ -32,6 +33,7 @@ pub const CONSTANTS: [Constant; 23] = [
     F32("MOST_SPREAD", MOST_SPREAD),
     F32("FADE_BELOW", FADE_BELOW),
     F32("INVISIBLE", INVISIBLE),
+    F32("FULL", FULL),
     F32("MOST_TAPS", MOST_TAPS),
     F32("DEEPEST_HAIR", DEEPEST_HAIR),
     F32("HORIZON", HORIZON),

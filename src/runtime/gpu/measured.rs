@@ -1,15 +1,14 @@
 //! What is measured of a picture instead of drawn.
 
-use super::Renderer;
 use super::layout::ViewUniform;
-use super::pipelines::{CostPipelines, DepthPipelines};
+use super::measuring::{CostPipelines, DepthPipelines};
 use super::prepared::Prepared;
 use super::resources::GpuFur;
 use super::targets::Targets;
+use super::{PassCost, Renderer};
 use crate::error::Result;
 use crate::runtime::draw_list::{Frame, Picture, Show};
 use crate::runtime::order::Order;
-use crate::runtime::shadow_view::ShadowView;
 
 /// By which pipeline a coat is drawn, and its fins.
 type Drawn<'p> = dyn Fn(&GpuFur, bool) -> &'p wgpu::RenderPipeline + 'p;
@@ -24,10 +23,37 @@ impl Prepared<'_> {
         let Renderer { gpu, pipelines, samples, .. } = self.renderer;
         let costs = self.costs.get_or_init(|| CostPipelines::new(gpu, pipelines));
         let order = Order::of(&self.sighted(), view, *samples, show);
-        let skin = if show.skin { &costs.skin } else { &pipelines.skin_depth };
-        let shells = &costs.shells[usize::from(show.fins)];
-        let counted = |fur: &GpuFur, fins: bool| if fins { &costs.fins } else { &shells[usize::from(fur.painted)] };
-        self.measured(view, self.shadow(view).as_ref(), skin, &[(order, &counted)])
+        let targets = || Targets::new(gpu, pipelines, view.size, *samples);
+        let (targets, counted) = (targets()?, targets()?);
+        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view, self.shadow(view).as_ref())));
+        self.set(&order);
+        let group = self.view_group(&order.items, &targets);
+        let mut encoder = gpu.encoder("cost");
+        self.find_skin(&mut encoder, &targets, &group, &order.details);
+        let [drawn, costed] = [&pipelines.shells, &costs.shells].map(|shells| &shells[usize::from(show.fins)]);
+        let draws = |fur: &GpuFur, fins: bool| if fins { &pipelines.fins } else { &drawn[usize::from(fur.painted)] };
+        let counts = |fur: &GpuFur, fins: bool| if fins { &costs.fins } else { &costed[usize::from(fur.painted)] };
+        // Each piece is drawn and counted with the same depths, so that what is hidden by then counts for nothing.
+        for (number, runs) in order.pieces.iter().enumerate() {
+            for (into, by) in [(&targets, &draws as &Drawn<'_>), (&counted, &counts)] {
+                let mut pass = into.coat_pass_before(&targets, &mut encoder, "cost", number == 0, None);
+                pass.set_bind_group(0, &group, &[]);
+                let by = |fur: &GpuFur, fins| Some(by(fur, fins));
+                self.draw_coat(&mut pass, runs, &order.details, by, &mut PassCost::default());
+            }
+            targets.hide_coat(&mut encoder, pipelines);
+        }
+        if show.skin {
+            targets.hide_skin(&mut encoder, pipelines);
+            let mut pass = counted.skin_pass(&targets, &mut encoder, None);
+            pass.set_bind_group(0, &group, &[]);
+            self.draw_skins(&mut pass, &costs.skin, &order.details);
+            drop(pass);
+            counted.lay_skin_under(&mut encoder, pipelines);
+        }
+        counted.resolve(&mut encoder, pipelines);
+        gpu.finish(encoder)?;
+        counted.picture(gpu, view)
     }
 
     /// How much hair lies over the skin, as a picture: red is the mean optical depth that all near shells have at a pixel, green
@@ -39,33 +65,19 @@ impl Prepared<'_> {
         let Renderer { gpu, pipelines, samples, .. } = self.renderer;
         let DepthPipelines { expected, slabs, .. } = self.depths.get_or_init(|| DepthPipelines::new(gpu, pipelines));
         let [skin, coat] = [true, false].map(|skin| Order::all(&self.sighted(), view, *samples, skin));
-        self.measured(view, None, &pipelines.skin_depth, &[(skin, &|_, _| expected), (coat, &|_, _| slabs)])
-    }
-
-    /// A picture of what `skin` and then each order add up, drawn by its own pipelines.
-    fn measured(
-        &self,
-        view: &Frame,
-        shadow: Option<&ShadowView>,
-        skin: &wgpu::RenderPipeline,
-        orders: &[(Order, &Drawn<'_>)],
-    ) -> Result<Picture> {
-        let Renderer { gpu, pipelines, samples, .. } = self.renderer;
         let targets = Targets::new(gpu, pipelines, view.size, *samples)?;
-        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view, shadow)));
-        // All show the same levels.
-        orders.iter().for_each(|(order, _)| self.set(order));
-        let groups: Vec<_> = orders.iter().map(|(order, _)| self.view_group(&order.items, &targets)).collect();
-        let mut encoder = gpu.encoder("measured");
-        let mut pass = targets.skin_pass(&mut encoder, None);
-        pass.set_bind_group(0, &groups[0], &[]);
-        self.draw_skins(&mut pass, skin, &orders[0].0.details);
-        drop(pass);
-        targets.find_edges(&mut encoder, pipelines);
-        let mut pass = targets.coat_pass(&mut encoder, "measured", None);
-        for ((order, drawn), group) in orders.iter().zip(&groups) {
+        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view, None)));
+        // Both show the same levels.
+        self.set(&skin);
+        let [over, there] = [&skin, &coat].map(|order| self.view_group(&order.items, &targets));
+        let mut encoder = gpu.encoder("hair over skin");
+        self.find_skin(&mut encoder, &targets, &over, &skin.details);
+        let mut pass = targets.coat_pass(&mut encoder, "hair over skin", true, None);
+        for (order, drawn, group) in [(&skin, expected, &over), (&coat, slabs, &there)] {
             pass.set_bind_group(0, group, &[]);
-            self.draw_coat(&mut pass, order, |fur, fins| Some(drawn(fur, fins)));
+            for runs in &order.pieces {
+                self.draw_coat(&mut pass, runs, &order.details, |_, _| Some(drawn), &mut PassCost::default());
+            }
         }
         drop(pass);
         targets.resolve(&mut encoder, pipelines);

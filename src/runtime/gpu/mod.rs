@@ -1,7 +1,8 @@
 //! The coat on a graphics device (`docs/steps/runtime.md`; shaders in `shaders/runtime/`).
 //!
-//! Order: the key light's shadow map; skin (writes depth); the far side of the shells, outer to inner; fins; the near side, inner to outer. Along any
-//! ray through a convex body that is back to front.
+//! Order: the key light's shadow map; the skin's depth; the near side of the shells, outer to inner; fins; the far side, inner to outer; the
+//! skin. Along any ray through a convex body that is front to back, each under what was drawn before. It is done in pieces: what is opaque
+//! after one of them hides whatever is drawn from then on, before it is shaded.
 //!
 //! Made once and kept: passes and tiles in a [`Renderer`], the geometry of a pose in a [`Prepared`]. A view costs its
 //! uniforms, the passes and the way back.
@@ -10,6 +11,7 @@ mod bindings;
 mod constants;
 pub mod layout;
 mod measured;
+mod measuring;
 pub mod pipelines;
 mod prepared;
 mod resources;
@@ -28,9 +30,9 @@ use shadow_map::ShadowMap;
 use tile::GpuTile;
 
 /// Time and memory of one pass.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PassCost {
-    /// `shadow map`, `skin`, `far shells`, `fins`, `near shells`.
+    /// `shadow map`, `coat`, `skin`.
     pub name: &'static str,
     /// Device time, ms; `None` where the adapter has no clock.
     pub ms: Option<f64>,

@@ -39,6 +39,10 @@ pub const FIN: Source = source!("runtime/fin.wgsl");
 pub const CASTER: Source = source!("runtime/caster.wgsl");
 /// The skin's edges.
 pub const EDGES: Source = source!("runtime/edges.wgsl");
+/// Where nothing behind is seen.
+pub const FULLY: Source = source!("runtime/full.wgsl");
+/// Skin behind what is drawn.
+pub const UNDER: Source = source!("runtime/under.wgsl");
 /// Samples to pixels.
 pub const RESOLVE: Source = source!("runtime/resolve.wgsl");
 
@@ -56,7 +60,7 @@ pub const RESOLVED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 pub const RESOLVED_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
 /// The skin's vertices.
-const SKIN_VERTICES: wgpu::VertexBufferLayout<'_> = wgpu::VertexBufferLayout {
+pub(super) const SKIN_VERTICES: wgpu::VertexBufferLayout<'_> = wgpu::VertexBufferLayout {
     array_stride: size_of::<SkinVertex>() as u64,
     step_mode: wgpu::VertexStepMode::Vertex,
     attributes: &SkinVertex::ATTRIBUTES,
@@ -76,6 +80,8 @@ pub struct Layouts {
     pub fin: wgpu::BindGroupLayout,
     /// Group 0 of the skin's edges: its depths.
     pub depths: wgpu::BindGroupLayout,
+    /// Group 0 of what reads one target: its texels.
+    pub texels: wgpu::BindGroupLayout,
     /// Group 0 of the resolve: the samples, their depths and the skin's edges.
     pub samples: wgpu::BindGroupLayout,
 }
@@ -120,6 +126,7 @@ impl Layouts {
             material: group("material", &[sampler, array, sampler, array]),
             fin: group("fin", &[sampler, array, array]),
             depths: group("depths", &[depths(true)]),
+            texels: group("texels", &[flat]),
             samples: group("samples", &[flat, depths(false), flat]),
         }
     }
@@ -129,43 +136,48 @@ impl Layouts {
 pub struct Pipelines {
     /// What they bind.
     pub layouts: Layouts,
-    /// Opaque skin: tests and writes depth.
-    pub skin: wgpu::RenderPipeline,
-    /// SkinMesh that only hides what is behind it.
+    /// The skin's depth.
     pub skin_depth: wgpu::RenderPipeline,
+    /// Opaque skin: tests depth.
+    pub skin: wgpu::RenderPipeline,
+    /// The nearest depth where nothing behind is seen: among a pixel's edge samples (index 1), or once.
+    pub full: [wgpu::RenderPipeline; 2],
+    /// The skin under what is drawn.
+    pub under: wgpu::RenderPipeline,
     /// What the skin's depths leave of each pixel.
     pub edges: wgpu::RenderPipeline,
     /// Shells: test depth. With fins to hand over to, and with textures at the roots (index 1), or without.
     pub shells: [[wgpu::RenderPipeline; 2]; 2],
     /// Fins: test depth.
     pub fins: wgpu::RenderPipeline,
-    modules: [wgpu::ShaderModule; 3],
+    /// Of the skin, shells and fins.
+    pub(super) modules: [wgpu::ShaderModule; 3],
     /// Samples to pixels.
     pub resolve: wgpu::RenderPipeline,
 }
 
 /// What distinguishes one pass from another.
-struct Pass<'a> {
-    shader: &'a wgpu::ShaderModule,
-    groups: &'a [Option<&'a wgpu::BindGroupLayout>],
-    vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    constants: &'a [(&'a str, f64)],
-    targets: &'a [Option<wgpu::ColorTargetState>],
-    depth: Option<Depth>,
-    samples: u32,
+pub(super) struct Pass<'a> {
+    pub shader: &'a wgpu::ShaderModule,
+    pub groups: &'a [Option<&'a wgpu::BindGroupLayout>],
+    pub vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    pub constants: &'a [(&'a str, f64)],
+    pub targets: &'a [Option<wgpu::ColorTargetState>],
+    pub depth: Option<Depth>,
+    pub samples: u32,
 }
 
 /// What a pass does with depth.
 #[derive(Clone, Copy)]
-struct Depth {
+pub(super) struct Depth {
     writes: bool,
     compare: wgpu::CompareFunction,
 }
 
 impl Depth {
-    const TESTED: Self = Self { writes: false, compare: wgpu::CompareFunction::LessEqual };
-    const WRITTEN: Self = Self { writes: true, ..Self::TESTED };
-    const COPIED: Self = Self { writes: true, compare: wgpu::CompareFunction::Always };
+    pub const TESTED: Self = Self { writes: false, compare: wgpu::CompareFunction::LessEqual };
+    pub const WRITTEN: Self = Self { writes: true, ..Self::TESTED };
+    pub const COPIED: Self = Self { writes: true, compare: wgpu::CompareFunction::Always };
 }
 
 impl Pipelines {
@@ -175,25 +187,43 @@ impl Pipelines {
     /// [`crate::error::Kind::Device`] with the compiler's message.
     pub fn new(gpu: &Gpu, samples: u32) -> Result<Self> {
         let layouts = Layouts::new(gpu);
-        let [skin, shell, fin, edges, resolve] =
-            [SKIN, SHELL, FIN, EDGES, RESOLVE].map(|main| gpu.shader(main, &SHARED));
-        let (skin, shell, fin, edges, resolve) = (skin?, shell?, fin?, edges?, resolve?);
+        let shader = |main| gpu.shader(main, &SHARED);
+        let (skin, shell, fin) = (shader(SKIN)?, shader(SHELL)?, shader(FIN)?);
+        let (edges, full, under, resolve) = (shader(EDGES)?, shader(FULLY)?, shader(UNDER)?, shader(RESOLVE)?);
         let target = |format, blend, write_mask| Some(wgpu::ColorTargetState { format, blend, write_mask });
         let opaque = [target(COLOUR, None, wgpu::ColorWrites::ALL)];
-        let hidden = [target(COLOUR, None, wgpu::ColorWrites::empty())];
-        let blended = [target(COLOUR, Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), wgpu::ColorWrites::ALL)];
+        let behind = [target(COLOUR, Some(BEHIND), wgpu::ColorWrites::ALL)];
         let resolved = [RESOLVED, RESOLVED_DEPTH].map(|format| target(format, None, wgpu::ColorWrites::ALL));
         let (view, tile) = (Some(&layouts.view), Some(&layouts.tile));
         let skin_vertices = [Some(SKIN_VERTICES)];
         let skin_groups = [view, tile, Some(&layouts.material)];
-        let skin_pass = |targets| Pass {
+        let skin_pass = |targets, depth| Pass {
             shader: &skin,
             groups: &skin_groups,
             vertices: &skin_vertices,
             constants: &[],
             targets,
-            depth: Some(Depth::WRITTEN),
+            depth: Some(depth),
             samples: EDGE_SAMPLES,
+        };
+        let texels = [Some(&layouts.texels)];
+        let full = |samples| Pass {
+            shader: &full,
+            groups: &texels,
+            vertices: &[],
+            constants: &[],
+            targets: &[],
+            depth: Some(Depth::COPIED),
+            samples,
+        };
+        let under = Pass {
+            shader: &under,
+            groups: &texels,
+            vertices: &[],
+            constants: &[],
+            targets: &behind,
+            depth: None,
+            samples: 1,
         };
         let shell_groups = [view, tile, Some(&layouts.geometry)];
         let shells = |with_fins: bool, painted: bool| {
@@ -205,7 +235,7 @@ impl Pipelines {
                     groups: &shell_groups,
                     vertices: &[],
                     constants: &constants,
-                    targets: &blended,
+                    targets: &behind,
                     depth: Some(Depth::TESTED),
                     samples: 1,
                 },
@@ -217,7 +247,7 @@ impl Pipelines {
             groups: &fin_groups,
             vertices: &[],
             constants: &[],
-            targets: &blended,
+            targets: &behind,
             depth: Some(Depth::TESTED),
             samples: 1,
         };
@@ -242,8 +272,10 @@ impl Pipelines {
             samples: 1,
         };
         Ok(Self {
-            skin: pipeline(gpu, &skin_pass(&opaque)),
-            skin_depth: pipeline(gpu, &skin_pass(&hidden)),
+            skin_depth: pipeline(gpu, &skin_pass(&[], Depth::WRITTEN)),
+            skin: pipeline(gpu, &skin_pass(&opaque, Depth::TESTED)),
+            full: [1, EDGE_SAMPLES].map(|samples| pipeline(gpu, &full(samples))),
+            under: pipeline(gpu, &under),
             edges: pipeline(gpu, &edges),
             shells: [false, true].map(|fins| [false, true].map(|painted| shells(fins, painted))),
             fins: pipeline(gpu, &fins),
@@ -254,106 +286,18 @@ impl Pipelines {
     }
 }
 
-/// The passes that add up how much hair lies over the skin, and that find the nearest hair.
-pub struct DepthPipelines {
-    /// On the skin: what the hair over it would come to.
-    pub expected: wgpu::RenderPipeline,
-    /// Each near shell.
-    pub slabs: wgpu::RenderPipeline,
-    /// Depth of each near shell where it has hair, without and with textures at the roots.
-    pub nearest: [wgpu::RenderPipeline; 2],
-}
-
-impl DepthPipelines {
-    /// Compiles them.
-    pub fn new(gpu: &Gpu, pipelines: &Pipelines) -> Self {
-        let Layouts { view, tile, geometry, .. } = &pipelines.layouts;
-        let targets = [Some(added())];
-        let hidden =
-            [Some(wgpu::ColorTargetState { format: COLOUR, blend: None, write_mask: wgpu::ColorWrites::empty() })];
-        let shells = |depths: f64, painted: bool, targets, depth| {
-            let constants = [("WITH_FINS", 0.0), ("MEASURE", depths), ("PAINTED", f64::from(painted))];
-            let pass = Pass {
-                shader: &pipelines.modules[1],
-                groups: &[Some(view), Some(tile), Some(geometry)],
-                vertices: &[],
-                constants: &constants,
-                targets,
-                depth: Some(depth),
-                samples: 1,
-            };
-            pipeline(gpu, &pass)
-        };
-        Self {
-            expected: shells(2.0, true, &targets, Depth::TESTED),
-            slabs: shells(1.0, true, &targets, Depth::TESTED),
-            nearest: [false, true].map(|painted| shells(3.0, painted, &hidden, Depth::WRITTEN)),
-        }
-    }
-}
-
-/// The passes that add up what a picture costs.
-pub struct CostPipelines {
-    /// Skin.
-    pub skin: wgpu::RenderPipeline,
-    /// Shells: with fins to hand over to, and with textures at the roots (index 1), or without.
-    pub shells: [[wgpu::RenderPipeline; 2]; 2],
-    /// Fins.
-    pub fins: wgpu::RenderPipeline,
-}
-
-impl CostPipelines {
-    /// Compiles them.
-    pub fn new(gpu: &Gpu, pipelines: &Pipelines) -> Self {
-        let Layouts { view, tile, geometry, material, fin, .. } = &pipelines.layouts;
-        let [skin, shell, fins] = &pipelines.modules;
-        let targets = [Some(added())];
-        let pass = |shader, groups: &[Option<&wgpu::BindGroupLayout>], constants: &[(&str, f64)]| {
-            let pass = Pass {
-                shader,
-                groups,
-                vertices: &[],
-                constants,
-                targets: &targets,
-                depth: Some(Depth::TESTED),
-                samples: 1,
-            };
-            pipeline(gpu, &pass)
-        };
-        let measured = ("MEASURE", 4.0);
-        let shells = |with_fins: bool, painted: bool| {
-            let constants = [("WITH_FINS", f64::from(with_fins)), ("PAINTED", f64::from(painted)), measured];
-            pass(shell, &[Some(view), Some(tile), Some(geometry)], &constants)
-        };
-        let skin = Pass {
-            shader: skin,
-            groups: &[Some(view), Some(tile), Some(material)],
-            vertices: &[Some(SKIN_VERTICES)],
-            constants: &[measured],
-            targets: &targets,
-            depth: Some(Depth::WRITTEN),
-            samples: EDGE_SAMPLES,
-        };
-        Self {
-            skin: pipeline(gpu, &skin),
-            shells: [false, true].map(|fins| [false, true].map(|painted| shells(fins, painted))),
-            fins: pass(fins, &[Some(view), Some(tile), Some(geometry), Some(fin)], &[measured]),
-        }
-    }
-}
-
-/// A target to which everything is added.
-fn added() -> wgpu::ColorTargetState {
-    let one = wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::One,
+/// What is drawn lies behind what was: premultiplied, with the alpha of what is before it.
+const BEHIND: wgpu::BlendState = {
+    let component = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::OneMinusDstAlpha,
         dst_factor: wgpu::BlendFactor::One,
         operation: wgpu::BlendOperation::Add,
     };
-    let blend = Some(wgpu::BlendState { color: one, alpha: one });
-    wgpu::ColorTargetState { format: COLOUR, blend, write_mask: wgpu::ColorWrites::ALL }
-}
+    wgpu::BlendState { color: component, alpha: component }
+};
 
-fn pipeline(gpu: &Gpu, pass: &Pass<'_>) -> wgpu::RenderPipeline {
+/// Compiles a pass.
+pub(super) fn pipeline(gpu: &Gpu, pass: &Pass<'_>) -> wgpu::RenderPipeline {
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
         bind_group_layouts: pass.groups,
@@ -378,7 +322,8 @@ fn pipeline(gpu: &Gpu, pass: &Pass<'_>) -> wgpu::RenderPipeline {
             bias: wgpu::DepthBiasState::default(),
         }),
         multisample: wgpu::MultisampleState { count: pass.samples, ..Default::default() },
-        fragment: Some(wgpu::FragmentState {
+        // The skin's depth needs no colour; what marks depths discards some.
+        fragment: (pass.vertices.is_empty() || !pass.targets.is_empty()).then_some(wgpu::FragmentState {
             module: pass.shader,
             entry_point: Some("fragment"),
             compilation_options,

@@ -2,7 +2,7 @@
 
 use super::bindings::bind;
 use super::layout::ViewUniform;
-use super::pipelines::{CostPipelines, DepthPipelines};
+use super::measuring::{CostPipelines, DepthPipelines};
 use super::resources::{self, GpuFur, GpuSkin, Textures};
 use super::shadow_map::{GpuCasters, MAP_BYTES};
 use super::targets::Targets;
@@ -12,14 +12,14 @@ use crate::gpu::Timer;
 use crate::runtime::away_from_borders;
 use crate::runtime::detail::Detail;
 use crate::runtime::draw_list::{DrawList, Frame, MAX_LIGHTS, Show};
-use crate::runtime::order::{Item, Order};
+use crate::runtime::order::{Item, Order, Run};
 use crate::runtime::shadow_view::ShadowView;
 use crate::runtime::sight::Sighted;
 use bytemuck::Zeroable;
 use std::cell::OnceCell;
 
 /// Passes whose time is taken: the shadow map, and these.
-const TIMED: [&str; 2] = ["skin", "coat"];
+const TIMED: [&str; 2] = ["coat", "skin"];
 
 /// A posed asset on the device, and what each picture of it is drawn with.
 pub struct Prepared<'a> {
@@ -109,24 +109,38 @@ impl<'a> Prepared<'a> {
         let mut encoder = gpu.encoder("frame");
         let casters = shadow.is_some().then_some(&self.casters);
         let mut passes = vec![self.renderer.shadow_map.draw(&mut encoder, casters, self.timer.writes(0))];
-        let mut pass = targets.skin_pass(&mut encoder, self.timer.writes(1));
-        pass.set_bind_group(0, &group, &[]);
-        let skin = if show.skin { &pipelines.skin } else { &pipelines.skin_depth };
-        passes.push(self.draw_skins(&mut pass, skin, &order.details));
-        drop(pass);
-        targets.find_edges(&mut encoder, pipelines);
-        let mut pass = targets.coat_pass(&mut encoder, TIMED[1], self.timer.writes(2));
-        pass.set_bind_group(0, &group, &[]);
+        self.find_skin(&mut encoder, &targets, &group, &order.details);
         let shells = &pipelines.shells[usize::from(show.fins)];
         let drawn =
             |fur: &GpuFur, fins: bool| Some(if fins { &pipelines.fins } else { &shells[usize::from(fur.painted)] });
-        passes.push(self.draw_coat(&mut pass, &order, drawn));
-        drop(pass);
+        let mut coat = PassCost { name: TIMED[0], bytes: self.bytes_read(), ..PassCost::default() };
+        for (number, runs) in order.pieces.iter().enumerate() {
+            let (first, last) = (number == 0, number + 1 == order.pieces.len());
+            let mut pass = targets.coat_pass(&mut encoder, TIMED[0], first, self.timer.spanning(1, first, last));
+            pass.set_bind_group(0, &group, &[]);
+            self.draw_coat(&mut pass, runs, &order.details, drawn, &mut coat);
+            drop(pass);
+            targets.hide_coat(&mut encoder, pipelines);
+        }
+        passes.push(coat);
+        // What was hidden is found again.
+        targets.find_edges(&mut encoder, pipelines);
         if view.depths {
             let nearest = &self.depths.get_or_init(|| DepthPipelines::new(gpu, pipelines)).nearest;
-            let mut pass = targets.coat_pass(&mut encoder, "depths", None);
+            let mut pass = targets.coat_pass(&mut encoder, "depths", false, None);
             pass.set_bind_group(0, &group, &[]);
-            self.draw_coat(&mut pass, &order, |fur, fins| (!fins).then_some(&nearest[usize::from(fur.painted)]));
+            let drawn = |fur: &GpuFur, fins: bool| (!fins).then_some(&nearest[usize::from(fur.painted)]);
+            for runs in &order.pieces {
+                self.draw_coat(&mut pass, runs, &order.details, drawn, &mut PassCost::default());
+            }
+        }
+        if show.skin {
+            targets.hide_skin(&mut encoder, pipelines);
+            let mut pass = targets.skin_pass(&targets, &mut encoder, self.timer.writes(2));
+            pass.set_bind_group(0, &group, &[]);
+            passes.push(self.draw_skins(&mut pass, &pipelines.skin, &order.details));
+            drop(pass);
+            targets.lay_skin_under(&mut encoder, pipelines);
         }
         targets.resolve(&mut encoder, pipelines);
         self.timer.stop(&mut encoder);
@@ -184,6 +198,22 @@ impl<'a> Prepared<'a> {
         shown.filter_map(|(_, detail)| detail.levels().map(|(level, _)| level).min()).min().unwrap_or(0)
     }
 
+    /// Finds the skin's depths and edges, which the coat is drawn over.
+    pub(super) fn find_skin(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        targets: &Targets,
+        group: &wgpu::BindGroup,
+        details: &[Detail],
+    ) {
+        let pipelines = &self.renderer.pipelines;
+        let mut pass = targets.depth_pass(encoder);
+        pass.set_bind_group(0, group, &[]);
+        self.draw_skins(&mut pass, &pipelines.skin_depth, details);
+        drop(pass);
+        targets.find_edges(encoder, pipelines);
+    }
+
     /// All skins by `pipeline`, under the coats' levels.
     pub(super) fn draw_skins(
         &self,
@@ -191,7 +221,7 @@ impl<'a> Prepared<'a> {
         pipeline: &wgpu::RenderPipeline,
         details: &[Detail],
     ) -> PassCost {
-        let mut cost = PassCost { name: TIMED[0], ms: None, bytes: 0, draw_calls: 0, triangles: 0 };
+        let mut cost = PassCost { name: TIMED[1], ..PassCost::default() };
         pass.set_pipeline(pipeline);
         for skin in &self.skins {
             let tile =
@@ -208,15 +238,16 @@ impl<'a> Prepared<'a> {
         cost
     }
 
-    /// The runs of `order`, each by the pipeline that `drawn` has for its coat and for whether it is fins, if any.
+    /// Each of `runs` by the pipeline that `drawn` has for its coat and for whether it is fins, if any; added to `cost`.
     pub(super) fn draw_coat<'p>(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        order: &Order,
+        runs: &[Run],
+        details: &[Detail],
         drawn: impl Fn(&GpuFur, bool) -> Option<&'p wgpu::RenderPipeline>,
-    ) -> PassCost {
-        let mut cost = PassCost { name: TIMED[1], ms: None, bytes: self.bytes_read(), draw_calls: 0, triangles: 0 };
-        for run in &order.runs {
+        cost: &mut PassCost,
+    ) {
+        for run in runs {
             let fur = &self.furs[run.fur];
             let tile = &self.renderer.tiles[fur.tile][run.level];
             let Some(pipeline) = drawn(fur, run.fins) else { continue };
@@ -224,7 +255,7 @@ impl<'a> Prepared<'a> {
             pass.set_bind_group(1, &tile.groups[run.look], &[]);
             pass.set_bind_group(
                 2,
-                if run.fins { &fur.fins } else { &fur.shells[order.details[run.fur].turn(run.level)] },
+                if run.fins { &fur.fins } else { &fur.shells[details[run.fur].turn(run.level)] },
                 &[],
             );
             if run.fins {
@@ -236,7 +267,6 @@ impl<'a> Prepared<'a> {
             cost.draw_calls += 1;
             cost.triangles += u64::from(corners / 3) * run.items.len() as u64;
         }
-        cost
     }
 
     fn bytes_read(&self) -> u64 {

@@ -40,7 +40,7 @@ impl GpuSkin {
     /// Uploads `skin`, which shows `texture`; `painted` is what is painted on it.
     fn new(gpu: &Gpu, layouts: &Layouts, skin: &SkinMesh<'_>, [texture, painted]: [&TextureArray; 2]) -> Self {
         let wrap = |of: Option<(&Image8, [Wrap; 2])>| of.map_or([Wrap::Repeat; 2], |(_, wrap)| wrap);
-        let samplers = [sampler(gpu, wrap(skin.texture), 16), sampler(gpu, wrap(skin.painted), 4)];
+        let samplers = [sampler(gpu, wrap(skin.texture), 8), sampler(gpu, wrap(skin.painted), 4)];
         let [base, paint] = samplers.each_ref().map(wgpu::BindingResource::Sampler);
         let material = bind(gpu, &layouts.material, &[base, view(texture), paint, view(painted)]);
         let vertices = SkinVertex::of(skin);
@@ -148,7 +148,7 @@ impl GpuFur {
         let paint = PaintUniform::new(fur);
         let paints = [(); 2].map(|()| gpu.buffer("paint", &[paint], wgpu::BufferUsages::UNIFORM));
         let wrap = |of: Option<(&Image8, [Wrap; 2])>| of.map_or([Wrap::Repeat; 2], |(_, wrap)| wrap);
-        let [colour, painted] = [sampler(gpu, wrap(fur.colour), 4), sampler(gpu, wrap(fur.painted), 4)];
+        let [colour, painted] = [sampler(gpu, wrap(fur.colour), 1), sampler(gpu, wrap(fur.painted), 1)];
         let shown = [textures.get(fur.colour, true)?, textures.get(fur.painted, false)?];
         let group = |faces: &wgpu::Buffer, paint: &wgpu::Buffer| {
             let resources = [
