@@ -10,7 +10,7 @@ use furrier::runtime::Item;
 use furrier::runtime::gpu::layout::{
     CoatVertex, FinInstance, LayerLook, Mip, PaintUniform, SkinVertex, SlabItem, TileUniform, ViewUniform,
 };
-use furrier::runtime::gpu::pipelines::{CASTER, EDGES, FIN, FULLY, RESOLVE, SHARED, SHELL, SKIN, UNDER};
+use furrier::runtime::gpu::pipelines::{CASTER, EDGES, FIN, FULLY, RESOLVE, SHARED, SHELL, SKIN, UNDER, WEIGHED};
 use furrier::shade::fibre::FibreLobe;
 use naga::proc::Layouter;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -52,7 +52,7 @@ fn kernel(source: Source) -> Module {
 
 #[test]
 fn every_shader_is_valid() {
-    for source in [SKIN, SHELL, FIN, EDGES, FULLY, UNDER, RESOLVE, CASTER] {
+    for source in [SKIN, SHELL, FIN, EDGES, FULLY, UNDER, WEIGHED, RESOLVE, CASTER] {
         let module = module(source);
         let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
         validator.validate(&module).unwrap_or_else(|error| panic!("{}: {error:?}", source.path));
@@ -77,7 +77,7 @@ fn every_kernel_is_valid() {
 #[test]
 fn every_shader_file_is_tested() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
-    let drawn = [SKIN, SHELL, FIN, EDGES, FULLY, UNDER, RESOLVE, CASTER];
+    let drawn = [SKIN, SHELL, FIN, EDGES, FULLY, UNDER, WEIGHED, RESOLVE, CASTER];
     let all = drawn.iter().chain(&SHARED).chain(&kernels::ALL).chain(&kernels::SHARED);
     let tested: Vec<_> = all.map(|source| source.path.to_owned()).collect();
     for kind in ["runtime", "hybrid", "shared"] {

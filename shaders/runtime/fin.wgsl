@@ -1,6 +1,7 @@
 // Fins: quads on edges near the silhouette, with hair seen from the side (Lengyel et al. 2001 §2.3).
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
+#import furrier::blending::{Shaded, Weighted, chance, plain, weighted_of, finest_step, kept_or_not, threshold}
 #import furrier::items::{items, uncovered, shadow_reads, read_root, root_level}
 #import furrier::lights::{Hair, Key, lit_by_all}
 #import furrier::shading::{past_skin, way_up}
@@ -59,13 +60,6 @@ struct Varyings {
     @location(11) @interpolate(flat) cos_view: f32,
 }
 
-// A number in [0, 1) by chance (Jarzynski and Olano 2020, "Hash functions for GPU rendering": pcg).
-fn chance(number: u32) -> f32 {
-    let state = number * 747796405u + 2891336453u;
-    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-    return f32((word >> 22u) ^ word) / 4294967296.0;
-}
-
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Varyings {
     let fin = fins[items[index / 6u].index];
@@ -116,8 +110,8 @@ fn bend_along(bend_per_m: f32, cosine: f32) -> f32 {
     return 0.25 * bend_per_m * max(1.0 - cosine * cosine, 0.0);
 }
 
-@fragment
-fn fragment(in: Varyings) -> @location(0) vec4<f32> {
+// What a fragment shows.
+fn shaded(in: Varyings) -> Shaded {
     // Where fins stand close, a pixel spans many texels along the edge and few along the hair. A mip that holds the former
     // would mix roots and tips, so no more of the width counts than a sampler can take apart.
     let size = vec2<f32>(textureDimensions(fin_albedo).xy);
@@ -141,7 +135,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let near_outline = at_outline(in.cos_view, near);
     let root_reads = f32(paint.has_painted + paint.has_colour);
     if near_outline <= 0.0 {
-        return select(vec4(0.0), vec4(1.0, root_reads, 0.0, 0.0), MEASURE == 4u);
+        return plain(select(vec4(0.0), vec4(1.0, root_reads, 0.0, 0.0), MEASURE == 4u));
     }
     let texels = vec2(length(vec2(uv_dx.x, uv_dy.x)), length(vec2(uv_dx.y, uv_dy.y))) * size;
     let narrowed = vec2(min(1.0, MAX_STRETCH * max(texels.y, 1.0) / max(texels.x, 1e-6)), 1.0);
@@ -149,7 +143,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let surface = textureSampleLevel(fin_albedo, fin_sampler, uv, 0, level);
     let medium = textureSampleLevel(fin_tangent, fin_sampler, uv, 0, level);
     if uv.y < 0.0 {
-        return select(vec4(0.0), vec4(1.0, root_reads + FIN_READS, 0.0, 0.0), MEASURE == 4u);
+        return plain(select(vec4(0.0), vec4(1.0, root_reads + FIN_READS, 0.0, 0.0), MEASURE == 4u));
     }
     let present = tint.w * root.density * presence(offset_m);
     let stored = (medium.xyz * 255.0 - 128.0) / 127.0;
@@ -177,10 +171,10 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let left = mix(amount, step(chance(u32(i32(floor(in.uv.x * STRIPS)))), amount), near);
     let opacity = thinned(surface.a, select(left, amount, amount >= 1.0)) * uncovered(in.clip);
     if MEASURE == 4u {
-        return vec4(1.0, root_reads + FIN_READS + 1.0 + select(0.0, shadow_reads(HAIR_TAPS), opacity >= INVISIBLE), 0.0, 0.0);
+        return plain(vec4(1.0, root_reads + FIN_READS + 1.0 + select(0.0, shadow_reads(HAIR_TAPS), opacity >= INVISIBLE), 0.0, 0.0));
     }
     if opacity < INVISIBLE {
-        return vec4(0.0);
+        return plain(vec4(0.0));
     }
 
     // What stands out at the outline is guard hair.
@@ -203,5 +197,21 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         key = Key(depth, open * key_share(0u, root_m, in.position_m, normal, to_light, HAIR_TAPS));
     }
     radiance += lit_by_all(Hair(in.position_m, tangent, normal, to_eye, above, crowding), seen, worn, key);
-    return vec4(radiance * opacity, opacity);
+    return Shaded(vec4(radiance * opacity, opacity), surface.rgb * tint.rgb, above * cos_of(clamp(eye_hair, -1.0, 1.0)) / max(abs(eye_normal), LEAST_COSINE));
+}
+
+@fragment
+fn fragment(in: Varyings) -> @location(0) vec4<f32> {
+    return shaded(in).light;
+}
+
+@fragment
+fn weighted(in: Varyings) -> Weighted {
+    return weighted_of(shaded(in), in.clip.z);
+}
+
+@fragment
+fn hashed(in: Varyings) -> @location(0) vec4<f32> {
+    let finest = finest_step(in.position_m);
+    return kept_or_not(shaded(in).light, threshold(in.position_m, finest));
 }

@@ -2,6 +2,7 @@
 // where the ray passes its middle.
 #import furrier::view::{view, ray_direction}
 #import furrier::light::light_at
+#import furrier::blending::{Shaded, Weighted, plain, weighted_of, finest_step, kept_or_not, threshold}
 #import furrier::items::{items, uncovered, shadow_reads, read_root}
 #import furrier::lights::{Hair, Key, lit_by_all}
 #import furrier::shading::{past_border, past_skin, way_to_border, way_up}
@@ -253,8 +254,8 @@ fn met(place: Place, slab: Filled, near_side: bool, near: f32) -> Met {
     return Met(gained * (through + of_ends), medium, uv, spot.round_level, spot.taps + 1.0, gained);
 }
 
-@fragment
-fn fragment(in: Varyings) -> @location(0) vec4<f32> {
+// What a fragment shows.
+fn shaded(in: Varyings) -> Shaded {
     let near_side = in.layer.y == 0u;
     let uv_dx = dpdx(in.uv);
     let uv_dy = dpdy(in.uv);
@@ -278,10 +279,10 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         discard;
     }
     if slab.slabs <= 0.0 && MEASURE == 4u {
-        return vec4(1.0, painted_reads, 0.0, 0.0);
+        return plain(vec4(1.0, painted_reads, 0.0, 0.0));
     }
     if slab.slabs <= 0.0 && MEASURE != 2u {
-        return vec4(0.0);
+        return plain(vec4(0.0));
     }
     let offset_m = in.offset_m * root.share;
     let place = place_of(in, offset_m, uv_dx, uv_dy);
@@ -295,7 +296,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         for (var layer = 1u; layer < tile.layers; layer++) {
             expected += met(place, filled_slab(layer, root.share), true, 1.0).depth * present;
         }
-        return uncovered(in.clip) * vec4(0.0, min(expected, OPAQUE), 1.0, 0.0);
+        return plain(uncovered(in.clip) * vec4(0.0, min(expected, OPAQUE), 1.0, 0.0));
     }
 
     let look = layer_looks[u32(slab.layer)];
@@ -307,7 +308,7 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     let kept = select(1.0, 1.0 - paint.fins * in.y_axis.w * fin_share(dot(place.normal, place.world_ray), near), WITH_FINS);
     let depth = found.depth * present * kept * paint.share;
     if MEASURE == 1u {
-        return vec4(min(depth, OPAQUE), 0.0, 0.0, 0.0);
+        return plain(vec4(min(depth, OPAQUE), 0.0, 0.0, 0.0));
     }
     var opacity = 1.0 - exp(-depth);
     let visible = opacity >= INVISIBLE;
@@ -320,10 +321,10 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
     if MEASURE == 4u {
         let coloured = PAINTED && paint.has_colour > 0u && tile.tinted > 0.5;
         let of_light = 1.0 + select(0.0, 1.0, coloured) + shadow_reads(HAIR_TAPS);
-        return vec4(1.0, painted_reads + found.reads + select(0.0, 1.0, visible) + select(0.0, of_light, opacity >= INVISIBLE), 0.0, 0.0);
+        return plain(vec4(1.0, painted_reads + found.reads + select(0.0, 1.0, visible) + select(0.0, of_light, opacity >= INVISIBLE), 0.0, 0.0));
     }
     if MEASURE == 3u || opacity < INVISIBLE {
-        return vec4(0.0);
+        return plain(vec4(0.0));
     }
     let surface = textureSampleLevel(albedo_texture, hair_sampler, found.uv, slab.layer, found.round_level);
     var tint = vec3(1.0);
@@ -377,5 +378,23 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         key = Key(own_depth, open * key_share(0u, root_m, in.position_m.xyz, normal, to_light, HAIR_TAPS));
     }
     radiance += lit_by_all(Hair(in.position_m.xyz, tangent, normal, to_eye, above, crowding), seen, worn, key);
-    return vec4(radiance * opacity, opacity);
+    // What the eye's ray meets of the coat before it comes here.
+    let before = select(2.0 * OPAQUE, found.gained * top_area * way_of(place, medium, to_eye, scale_m).longer, near_side);
+    return Shaded(vec4(radiance * opacity, opacity), surface.rgb * tint, before);
+}
+
+@fragment
+fn fragment(in: Varyings) -> @location(0) vec4<f32> {
+    return shaded(in).light;
+}
+
+@fragment
+fn weighted(in: Varyings) -> Weighted {
+    return weighted_of(shaded(in), in.clip.z);
+}
+
+@fragment
+fn hashed(in: Varyings) -> @location(0) vec4<f32> {
+    let finest = finest_step(in.position_m.xyz);
+    return kept_or_not(shaded(in).light, threshold(in.position_m.xyz, finest));
 }

@@ -7,9 +7,10 @@ use super::stage::StageArgs;
 use crate::asset;
 use crate::error::Result;
 use crate::gpu::Choice;
+use crate::runtime::Blending;
 use crate::stage::file::Format;
 use crate::viewer::{self, ViewOptions};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -50,6 +51,10 @@ pub struct View {
     /// Draw this level of detail: 0 is the finest [default: by the height of hair in the picture]
     #[arg(long, value_name = "N")]
     level: Option<usize>,
+    /// How half-transparent hair comes together in a pixel: from front to back; in any order, by weights; or there or not by
+    /// chance, a grainy picture of those that a game averages over time
+    #[arg(long, value_enum, default_value_t)]
+    blend: BlendBy,
     /// Play this animation, by name or number
     #[arg(long, value_name = "NAME")]
     animation: Option<String>,
@@ -65,6 +70,25 @@ pub struct View {
     /// Write times, sizes and counts to this JSON file
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
+}
+
+/// As [`Blending`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum BlendBy {
+    #[default]
+    Sorted,
+    Weighted,
+    Hashed,
+}
+
+impl From<BlendBy> for Blending {
+    fn from(by: BlendBy) -> Self {
+        match by {
+            BlendBy::Sorted => Self::Sorted,
+            BlendBy::Weighted => Self::Weighted,
+            BlendBy::Hashed => Self::Hashed,
+        }
+    }
 }
 
 impl View {
@@ -115,6 +139,7 @@ impl View {
             show: viewer::parse_show(&self.show)?,
             moment: self.animation.clone().map(|name| (name, self.time.unwrap_or(0.0))),
             level: self.level,
+            blend: self.blend.into(),
             shadow_map: !self.no_shadow,
             occluder: self.occluder.as_deref().map(|file| asset::load_as(file, &reading)).transpose()?,
             ..ViewOptions::default()

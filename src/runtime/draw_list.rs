@@ -104,6 +104,18 @@ impl Default for Show {
     }
 }
 
+/// How what is half transparent comes together in a pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Blending {
+    /// From front to back.
+    #[default]
+    Sorted,
+    /// In any order, by weights (McGuire and Bavoil 2013).
+    Weighted,
+    /// There or not, by chance, for engines that average pictures over time (Wyman and McGuire 2017).
+    Hashed,
+}
+
 /// Camera and light.
 #[derive(Clone, Debug)]
 pub struct Frame {

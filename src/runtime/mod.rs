@@ -18,7 +18,7 @@ pub use bends::{bends_per_m, outer_edge_m, outer_normals};
 pub use borders::away_from_borders;
 pub use casters::{Bounds, Casters};
 pub use detail::Detail;
-pub use draw_list::{CoatMesh, DrawList, Frame, MAX_LIGHTS, Picture, Show, SkinMesh};
+pub use draw_list::{Blending, CoatMesh, DrawList, Frame, MAX_LIGHTS, Picture, Show, SkinMesh};
 pub use order::{Item, Order, Run};
 pub use shadow_view::{ShadowView, TEXELS};
 pub use sight::{Before, Eye, LevelSight, OUTLINE, Point, Seen, Sighted, TOLD_APART};

@@ -19,7 +19,7 @@ use crate::gpu::{Choice, Gpu};
 use crate::math::{DVec3, Vec3};
 use crate::metrics::timing::{Recorder, Report};
 use crate::runtime::gpu::{KeyShadow, Prepared, Renderer};
-use crate::runtime::{Frame, Picture, Show};
+use crate::runtime::{Blending, Frame, Picture, Show};
 use crate::stage::camera::{Orbit, Viewpoint};
 use crate::stage::file::Format;
 use crate::stage::light::Lit;
@@ -50,6 +50,8 @@ pub struct ViewOptions {
     pub depths: bool,
     /// Level of detail, 0 being the finest, or the coarsest there is; none to choose by size.
     pub level: Option<usize>,
+    /// How shells and fins come together in a pixel.
+    pub blend: Blending,
     /// A thing beside the asset, in its units and axes. It is no part of what the camera is framed for.
     pub occluder: Option<Asset>,
 }
@@ -66,6 +68,7 @@ impl Default for ViewOptions {
             depths: false,
             level: None,
             count: false,
+            blend: Blending::Sorted,
             occluder: None,
         }
     }
@@ -294,7 +297,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
             ..sitting::frame(&camera, origin_m, &points_m, stage.size, lit)
         };
         recorder.row("draw: camera and light", ms_since(start), 0);
-        let (mut picture, shadow) = draw(&mut prepared, &view, show, &mut recorder)?;
+        let (mut picture, shadow) = draw(&mut prepared, &view, (show, options.blend), &mut recorder)?;
         notes.extend(notes::shadow(shadow).filter(|new| !notes.contains(new)));
         if let Some(over_skin) = &mut over_skin {
             let hair = recorder.step("hair over skin", || over_skin.hair_over_skin(&view), |_| 0)?;
@@ -303,7 +306,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
             (baldness.furred, baldness.bald) = (baldness.furred + here.furred, baldness.bald + here.bald);
         }
         if counted {
-            let cost = recorder.step("cost", || prepared.cost(&view, show), |_| 0)?;
+            let cost = recorder.step("cost", || prepared.cost(&view, show, options.blend), |_| 0)?;
             costs.add(&cost, &picture);
             if options.show == Shown::Cost {
                 picture = cost::picture(&cost);
@@ -339,11 +342,11 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
 fn draw(
     prepared: &mut Prepared<'_>,
     view: &Frame,
-    show: Show,
+    (show, blend): (Show, Blending),
     recorder: &mut Recorder,
 ) -> Result<(Picture, KeyShadow)> {
     let start = Instant::now();
-    let drawn = prepared.draw(view, show)?;
+    let drawn = prepared.draw_by(view, show, blend)?;
     let mut on_device = 0.0;
     for pass in &drawn.passes {
         on_device += pass.ms.unwrap_or(0.0);

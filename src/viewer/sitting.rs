@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::gpu::{Choice, Gpu};
 use crate::math::{DVec3, Vec3};
 use crate::runtime::gpu::{Drawn, Prepared, Renderer};
-use crate::runtime::{Frame, Picture, Show};
+use crate::runtime::{Blending, Frame, Picture, Show};
 use crate::stage::camera::depth_range_m;
 use crate::stage::light::Lit;
 
@@ -59,7 +59,8 @@ impl Sitting<'_> {
     /// # Errors
     /// As [`Prepared::cost`].
     pub fn reads(&mut self, camera: &Camera, lit: Lit, picture: &Picture, level: Option<usize>) -> Result<f64> {
-        let counted = self.prepared.cost(&self.frame(camera, lit, picture.size, level), Show::default())?;
+        let counted =
+            self.prepared.cost(&self.frame(camera, lit, picture.size, level), Show::default(), Blending::Sorted)?;
         let mut cost = Cost::default();
         cost.add(&counted, picture);
         Ok(cost.per_covered_pixel()[1])

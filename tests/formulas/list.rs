@@ -12,10 +12,18 @@ use std::path::Path;
 pub const ELSEWHERE: &[(&str, &[&str], &str)] = &[
     (
         "runtime/shell.wgsl",
-        &["bend_of", "bend_along", "way_of", "vertex", "place_of", "met", "fragment"],
+        &["bend_of", "bend_along", "way_of", "vertex", "place_of", "met", "shaded", "fragment"],
         "twins.rs compares pictures of planes with the law on the CPU, coat_light.rs their light with the renderer's",
     ),
-    ("runtime/fin.wgsl", &["chance", "bend_along", "vertex", "fragment"], "look.rs compares pixels of a fin"),
+    ("runtime/fin.wgsl", &["bend_along", "vertex", "shaded", "fragment"], "look.rs compares pixels of a fin"),
+    ("runtime/shell.wgsl", &["weighted", "hashed"], BLENDS),
+    ("runtime/fin.wgsl", &["weighted", "hashed"], BLENDS),
+    ("runtime/weighed.wgsl", &["vertex", "fragment"], BLENDS),
+    (
+        "runtime/blending.wgsl",
+        &["plain", "weighted_of", "mixed", "chance", "chance_in", "finest_step", "threshold", "kept_or_not"],
+        BLENDS,
+    ),
     ("runtime/lights.wgsl", &["lit_by_all"], "look.rs compares pixels of a fin under two lights"),
     ("runtime/skin.wgsl", &["vertex", "fragment"], "look.rs compares pixels of skin"),
     ("runtime/caster.wgsl", &["vertex"], SHADOWS),
@@ -69,6 +77,7 @@ pub const ELSEWHERE: &[(&str, &[&str], &str)] = &[
 
 const SHADOWS: &str = "draws and samples the shadow map: shadow_map.rs looks for it in pictures, place by place";
 const EDGES: &str = "finds and reads the skin's edges: runtime.rs looks at a bare edge before fur, and counts reads";
+const BLENDS: &str = "blends without an order: runtime.rs holds their light and coverage to the sorted picture's";
 const HIDDEN: &str =
     "hides what lies behind opaque hair: runtime.rs counts it, and all tests of the runtime look at what is left";
 const WALKS: &str = "walks the volume as it lies on the device: hybrid_twins.rs compares the pictures pixel by pixel";

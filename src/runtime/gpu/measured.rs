@@ -5,9 +5,10 @@ use super::measuring::{CostPipelines, DepthPipelines};
 use super::prepared::Prepared;
 use super::resources::GpuFur;
 use super::targets::Targets;
+use super::unsorted::Unsorted;
 use super::{PassCost, Renderer};
 use crate::error::Result;
-use crate::runtime::draw_list::{Frame, Picture, Show};
+use crate::runtime::draw_list::{Blending, Frame, Picture, Show};
 use crate::runtime::order::Order;
 
 /// By which pipeline a coat is drawn, and its fins.
@@ -19,7 +20,7 @@ impl Prepared<'_> {
     ///
     /// # Errors
     /// As [`Self::draw`].
-    pub fn cost(&mut self, view: &Frame, show: Show) -> Result<Picture> {
+    pub fn cost(&mut self, view: &Frame, show: Show, blend: Blending) -> Result<Picture> {
         let Renderer { gpu, pipelines, samples, .. } = self.renderer;
         let costs = self.costs.get_or_init(|| CostPipelines::new(gpu, pipelines));
         let order = Order::of(&self.sighted(), view, *samples, show);
@@ -31,20 +32,29 @@ impl Prepared<'_> {
         let mut encoder = gpu.encoder("cost");
         self.find_skin(&mut encoder, &targets, &group, &order.details);
         let [drawn, costed] = [&pipelines.shells, &costs.shells].map(|shells| &shells[usize::from(show.fins)]);
-        let draws = |fur: &GpuFur, fins: bool| if fins { &pipelines.fins } else { &drawn[usize::from(fur.painted)] };
+        let hashed = (blend == Blending::Hashed).then(|| self.hashed.get_or_init(|| Unsorted::hashed(gpu, pipelines)));
+        let draws = |fur: &GpuFur, fins: bool| match hashed {
+            Some(hashed) => hashed.of(fur, fins, show),
+            None if fins => &pipelines.fins,
+            None => &drawn[usize::from(fur.painted)],
+        };
         let counts = |fur: &GpuFur, fins: bool| if fins { &costs.fins } else { &costed[usize::from(fur.painted)] };
-        // Each piece is drawn and counted with the same depths, so that what is hidden by then counts for nothing.
+        // Each piece is counted and drawn with the same depths, so that what is hidden by then counts for nothing.
         for (number, runs) in order.pieces.iter().enumerate() {
-            for (into, by) in [(&targets, &draws as &Drawn<'_>), (&counted, &counts)] {
+            for (into, by) in [(&counted, &counts as &Drawn<'_>), (&targets, &draws)] {
                 let mut pass = into.coat_pass_before(&targets, &mut encoder, "cost", number == 0, None);
                 pass.set_bind_group(0, &group, &[]);
                 let by = |fur: &GpuFur, fins| Some(by(fur, fins));
                 self.draw_coat(&mut pass, runs, &order.details, by, &mut PassCost::default());
             }
-            targets.hide_coat(&mut encoder, pipelines);
+            if blend == Blending::Sorted {
+                targets.hide_coat(&mut encoder, pipelines);
+            }
         }
         if show.skin {
-            targets.hide_skin(&mut encoder, pipelines);
+            if blend != Blending::Weighted {
+                targets.hide_skin(&mut encoder, pipelines);
+            }
             let mut pass = counted.skin_pass(&targets, &mut encoder, None);
             pass.set_bind_group(0, &group, &[]);
             self.draw_skins(&mut pass, &costs.skin, &order.details);

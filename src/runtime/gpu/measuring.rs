@@ -24,6 +24,7 @@ impl DepthPipelines {
             let constants = [("WITH_FINS", 0.0), ("MEASURE", depths), ("PAINTED", f64::from(painted))];
             let pass = Pass {
                 shader: &pipelines.modules[1],
+                entry: "fragment",
                 groups: &[Some(view), Some(tile), Some(geometry)],
                 vertices: &[],
                 constants: &constants,
@@ -60,6 +61,7 @@ impl CostPipelines {
         let pass = |shader, groups: &[Option<&wgpu::BindGroupLayout>], constants: &[(&str, f64)]| {
             let pass = Pass {
                 shader,
+                entry: "fragment",
                 groups,
                 vertices: &[],
                 constants,
@@ -76,6 +78,7 @@ impl CostPipelines {
         };
         let skin = Pass {
             shader: skin,
+            entry: "fragment",
             groups: &[Some(view), Some(tile), Some(material)],
             vertices: &[Some(SKIN_VERTICES)],
             constants: &[measured],

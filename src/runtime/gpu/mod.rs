@@ -8,6 +8,7 @@
 //! uniforms, the passes and the way back.
 
 mod bindings;
+mod blending;
 mod constants;
 pub mod layout;
 mod measured;
@@ -18,6 +19,7 @@ mod resources;
 mod shadow_map;
 mod targets;
 mod tile;
+mod unsorted;
 
 pub use prepared::Prepared;
 

@@ -13,7 +13,7 @@ macro_rules! source {
 }
 
 /// Modules that others import, imported ones first.
-pub const SHARED: [Source; 14] = [
+pub const SHARED: [Source; 15] = [
     Source::constants("constants", &CONSTANTS),
     Source::constants("law_constants", &LAW_CONSTANTS),
     source!("shared/look.wgsl"),
@@ -21,6 +21,7 @@ pub const SHARED: [Source; 14] = [
     source!("shared/law.wgsl"),
     source!("shared/light.wgsl"),
     source!("shared/view.wgsl"),
+    source!("runtime/blending.wgsl"),
     source!("runtime/items.wgsl"),
     source!("runtime/whole.wgsl"),
     source!("shared/shadow_map.wgsl"),
@@ -43,6 +44,8 @@ pub const EDGES: Source = source!("runtime/edges.wgsl");
 pub const FULLY: Source = source!("runtime/full.wgsl");
 /// Skin behind what is drawn.
 pub const UNDER: Source = source!("runtime/under.wgsl");
+/// Weighted sums over the skin.
+pub const WEIGHED: Source = source!("runtime/weighed.wgsl");
 /// Samples to pixels.
 pub const RESOLVE: Source = source!("runtime/resolve.wgsl");
 
@@ -82,6 +85,8 @@ pub struct Layouts {
     pub depths: wgpu::BindGroupLayout,
     /// Group 0 of what reads one target: its texels.
     pub texels: wgpu::BindGroupLayout,
+    /// Group 0 of weighted sums: they, what they let through, and the skin.
+    pub sums: wgpu::BindGroupLayout,
     /// Group 0 of the resolve: the samples, their depths and the skin's edges.
     pub samples: wgpu::BindGroupLayout,
 }
@@ -127,6 +132,7 @@ impl Layouts {
             fin: group("fin", &[sampler, array, array]),
             depths: group("depths", &[depths(true)]),
             texels: group("texels", &[flat]),
+            sums: group("sums", &[flat; 3]),
             samples: group("samples", &[flat, depths(false), flat]),
         }
     }
@@ -144,6 +150,8 @@ pub struct Pipelines {
     pub full: [wgpu::RenderPipeline; 2],
     /// The skin under what is drawn.
     pub under: wgpu::RenderPipeline,
+    /// Weighted sums over the skin.
+    pub weighed: wgpu::RenderPipeline,
     /// What the skin's depths leave of each pixel.
     pub edges: wgpu::RenderPipeline,
     /// Shells: test depth. With fins to hand over to, and with textures at the roots (index 1), or without.
@@ -157,8 +165,11 @@ pub struct Pipelines {
 }
 
 /// What distinguishes one pass from another.
+#[derive(Clone, Copy)]
 pub(super) struct Pass<'a> {
     pub shader: &'a wgpu::ShaderModule,
+    /// Its function for fragments.
+    pub entry: &'a str,
     pub groups: &'a [Option<&'a wgpu::BindGroupLayout>],
     pub vertices: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     pub constants: &'a [(&'a str, f64)],
@@ -190,6 +201,7 @@ impl Pipelines {
         let shader = |main| gpu.shader(main, &SHARED);
         let (skin, shell, fin) = (shader(SKIN)?, shader(SHELL)?, shader(FIN)?);
         let (edges, full, under, resolve) = (shader(EDGES)?, shader(FULLY)?, shader(UNDER)?, shader(RESOLVE)?);
+        let weighed = shader(WEIGHED)?;
         let target = |format, blend, write_mask| Some(wgpu::ColorTargetState { format, blend, write_mask });
         let opaque = [target(COLOUR, None, wgpu::ColorWrites::ALL)];
         let behind = [target(COLOUR, Some(BEHIND), wgpu::ColorWrites::ALL)];
@@ -199,6 +211,7 @@ impl Pipelines {
         let skin_groups = [view, tile, Some(&layouts.material)];
         let skin_pass = |targets, depth| Pass {
             shader: &skin,
+            entry: "fragment",
             groups: &skin_groups,
             vertices: &skin_vertices,
             constants: &[],
@@ -209,6 +222,7 @@ impl Pipelines {
         let texels = [Some(&layouts.texels)];
         let full = |samples| Pass {
             shader: &full,
+            entry: "fragment",
             groups: &texels,
             vertices: &[],
             constants: &[],
@@ -218,12 +232,20 @@ impl Pipelines {
         };
         let under = Pass {
             shader: &under,
+            entry: "fragment",
             groups: &texels,
             vertices: &[],
             constants: &[],
             targets: &behind,
             depth: None,
             samples: 1,
+        };
+        let weighed = Pass {
+            shader: &weighed,
+            groups: &[Some(&layouts.sums)],
+            targets: &opaque,
+            depth: Some(Depth { writes: false, compare: wgpu::CompareFunction::Always }),
+            ..under
         };
         let shell_groups = [view, tile, Some(&layouts.geometry)];
         let shells = |with_fins: bool, painted: bool| {
@@ -232,6 +254,7 @@ impl Pipelines {
                 gpu,
                 &Pass {
                     shader: &shell,
+                    entry: "fragment",
                     groups: &shell_groups,
                     vertices: &[],
                     constants: &constants,
@@ -244,6 +267,7 @@ impl Pipelines {
         let fin_groups = [view, tile, Some(&layouts.geometry), Some(&layouts.fin)];
         let fins = Pass {
             shader: &fin,
+            entry: "fragment",
             groups: &fin_groups,
             vertices: &[],
             constants: &[],
@@ -254,6 +278,7 @@ impl Pipelines {
         let edge = [target(EDGE, None, wgpu::ColorWrites::ALL)];
         let edges = Pass {
             shader: &edges,
+            entry: "fragment",
             groups: &[Some(&layouts.depths)],
             vertices: &[],
             constants: &[],
@@ -264,6 +289,7 @@ impl Pipelines {
         let constants = [("SAMPLES", f64::from(samples))];
         let resolve = Pass {
             shader: &resolve,
+            entry: "fragment",
             groups: &[Some(&layouts.samples)],
             vertices: &[],
             constants: &constants,
@@ -276,6 +302,7 @@ impl Pipelines {
             skin: pipeline(gpu, &skin_pass(&opaque, Depth::TESTED)),
             full: [1, EDGE_SAMPLES].map(|samples| pipeline(gpu, &full(samples))),
             under: pipeline(gpu, &under),
+            weighed: pipeline(gpu, &weighed),
             edges: pipeline(gpu, &edges),
             shells: [false, true].map(|fins| [false, true].map(|painted| shells(fins, painted))),
             fins: pipeline(gpu, &fins),
@@ -325,7 +352,7 @@ pub(super) fn pipeline(gpu: &Gpu, pass: &Pass<'_>) -> wgpu::RenderPipeline {
         // The skin's depth needs no colour; what marks depths discards some.
         fragment: (pass.vertices.is_empty() || !pass.targets.is_empty()).then_some(wgpu::FragmentState {
             module: pass.shader,
-            entry_point: Some("fragment"),
+            entry_point: Some(pass.entry),
             compilation_options,
             targets: pass.targets,
         }),

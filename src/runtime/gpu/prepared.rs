@@ -6,12 +6,13 @@ use super::measuring::{CostPipelines, DepthPipelines};
 use super::resources::{self, GpuFur, GpuSkin, Textures};
 use super::shadow_map::{GpuCasters, MAP_BYTES};
 use super::targets::Targets;
+use super::unsorted::Unsorted;
 use super::{Drawn, KeyShadow, PassCost, Renderer};
 use crate::error::{Error, Result};
 use crate::gpu::Timer;
 use crate::runtime::away_from_borders;
 use crate::runtime::detail::Detail;
-use crate::runtime::draw_list::{DrawList, Frame, MAX_LIGHTS, Show};
+use crate::runtime::draw_list::{Blending, DrawList, Frame, MAX_LIGHTS, Show};
 use crate::runtime::order::{Item, Order, Run};
 use crate::runtime::shadow_view::ShadowView;
 use crate::runtime::sight::Sighted;
@@ -31,12 +32,14 @@ pub struct Prepared<'a> {
     bytes: u64,
     /// Camera and lights, written anew for each picture.
     pub(super) view: wgpu::Buffer,
-    timer: Timer,
+    pub(super) timer: Timer,
     /// Those of the last picture, kept for the next of the same size.
     targets: Option<Targets>,
     /// Made when first asked for.
     pub(super) depths: OnceCell<DepthPipelines>,
     pub(super) costs: OnceCell<CostPipelines>,
+    pub(super) weighted: OnceCell<Unsorted>,
+    pub(super) hashed: OnceCell<Unsorted>,
 }
 
 impl<'a> Prepared<'a> {
@@ -74,6 +77,8 @@ impl<'a> Prepared<'a> {
             targets: None,
             depths: OnceCell::new(),
             costs: OnceCell::new(),
+            weighted: OnceCell::new(),
+            hashed: OnceCell::new(),
         })
     }
 
@@ -88,6 +93,14 @@ impl<'a> Prepared<'a> {
     /// [`crate::error::Kind::Usage`] for a size the adapter cannot hold or too many lights; [`crate::error::Kind::Device`]
     /// from the device.
     pub fn draw(&mut self, view: &Frame, show: Show) -> Result<Drawn> {
+        self.draw_by(view, show, Blending::Sorted)
+    }
+
+    /// The same, blended in another way.
+    ///
+    /// # Errors
+    /// As [`Self::draw`].
+    pub fn draw_by(&mut self, view: &Frame, show: Show, blend: Blending) -> Result<Drawn> {
         if view.lights.len() > MAX_LIGHTS {
             return Err(Error::usage("too many lights")
                 .with_parameter("light")
@@ -110,19 +123,11 @@ impl<'a> Prepared<'a> {
         let casters = shadow.is_some().then_some(&self.casters);
         let mut passes = vec![self.renderer.shadow_map.draw(&mut encoder, casters, self.timer.writes(0))];
         self.find_skin(&mut encoder, &targets, &group, &order.details);
-        let shells = &pipelines.shells[usize::from(show.fins)];
-        let drawn =
-            |fur: &GpuFur, fins: bool| Some(if fins { &pipelines.fins } else { &shells[usize::from(fur.painted)] });
-        let mut coat = PassCost { name: TIMED[0], bytes: self.bytes_read(), ..PassCost::default() };
-        for (number, runs) in order.pieces.iter().enumerate() {
-            let (first, last) = (number == 0, number + 1 == order.pieces.len());
-            let mut pass = targets.coat_pass(&mut encoder, TIMED[0], first, self.timer.spanning(1, first, last));
-            pass.set_bind_group(0, &group, &[]);
-            self.draw_coat(&mut pass, runs, &order.details, drawn, &mut coat);
-            drop(pass);
-            targets.hide_coat(&mut encoder, pipelines);
+        if blend == Blending::Sorted {
+            passes.push(self.draw_sorted(&mut encoder, &targets, &group, &order, show));
+        } else {
+            passes.extend(self.draw_unsorted(&mut encoder, &targets, &group, &order, (show, blend))?);
         }
-        passes.push(coat);
         // What was hidden is found again.
         targets.find_edges(&mut encoder, pipelines);
         if view.depths {
@@ -134,7 +139,7 @@ impl<'a> Prepared<'a> {
                 self.draw_coat(&mut pass, runs, &order.details, drawn, &mut PassCost::default());
             }
         }
-        if show.skin {
+        if show.skin && blend == Blending::Sorted {
             targets.hide_skin(&mut encoder, pipelines);
             let mut pass = targets.skin_pass(&targets, &mut encoder, self.timer.writes(2));
             pass.set_bind_group(0, &group, &[]);
@@ -159,6 +164,36 @@ impl<'a> Prepared<'a> {
         let levels = order.details.iter().map(|detail| detail.level());
         let level = levels.sum::<f32>() / order.details.len().max(1) as f32;
         Ok(Drawn { picture, passes, target_bytes, level, height_px: order.height_px, shadow })
+    }
+
+    /// Draws the coat from front to back.
+    fn draw_sorted(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        targets: &Targets,
+        group: &wgpu::BindGroup,
+        order: &Order,
+        show: Show,
+    ) -> PassCost {
+        let pipelines = &self.renderer.pipelines;
+        let shells = &pipelines.shells[usize::from(show.fins)];
+        let drawn =
+            |fur: &GpuFur, fins: bool| Some(if fins { &pipelines.fins } else { &shells[usize::from(fur.painted)] });
+        let mut coat = self.coat_cost();
+        for (number, runs) in order.pieces.iter().enumerate() {
+            let (first, last) = (number == 0, number + 1 == order.pieces.len());
+            let mut pass = targets.coat_pass(encoder, TIMED[0], first, self.timer.spanning(1, first, last));
+            pass.set_bind_group(0, group, &[]);
+            self.draw_coat(&mut pass, runs, &order.details, drawn, &mut coat);
+            drop(pass);
+            targets.hide_coat(encoder, pipelines);
+        }
+        coat
+    }
+
+    /// What drawing the coats reads, before anything is drawn.
+    pub(super) fn coat_cost(&self) -> PassCost {
+        PassCost { name: TIMED[0], bytes: self.bytes_read(), ..PassCost::default() }
     }
 
     /// The key light's map, where it is asked for and holds what it should.

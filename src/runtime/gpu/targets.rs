@@ -18,7 +18,7 @@ pub(super) struct Targets {
     /// The skin's edges, for coats to read.
     pub edges: wgpu::TextureView,
     skin_samples: wgpu::TextureView,
-    skin: wgpu::TextureView,
+    pub skin: wgpu::TextureView,
     skin_group: wgpu::BindGroup,
     skin_depth: wgpu::TextureView,
     skin_depth_group: wgpu::BindGroup,
@@ -126,6 +126,11 @@ impl Targets {
         begin(encoder, name, Some(samples), (&depths.depth, wgpu::LoadOp::Load), timestamp_writes)
     }
 
+    /// The depths that a coat is tested by.
+    pub fn coat_depth(&self) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+        depth_attachment(&self.depth, wgpu::LoadOp::Load)
+    }
+
     /// Hides, where the coat is opaque by now, all that follows of it.
     pub fn hide_coat(&self, encoder: &mut wgpu::CommandEncoder, pipelines: &Pipelines) {
         self.hide(encoder, &self.depth, &pipelines.full[0]);
@@ -202,9 +207,18 @@ impl Targets {
 }
 
 /// A target that is kept.
-fn attachment(view: &wgpu::TextureView, load: wgpu::LoadOp<wgpu::Color>) -> wgpu::RenderPassColorAttachment<'_> {
+pub(super) fn attachment(
+    view: &wgpu::TextureView,
+    load: wgpu::LoadOp<wgpu::Color>,
+) -> wgpu::RenderPassColorAttachment<'_> {
     let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
     wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
+}
+
+/// Depths that are kept.
+fn depth_attachment(view: &wgpu::TextureView, load: wgpu::LoadOp<f32>) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    let depth_ops = Some(wgpu::Operations { load, store: wgpu::StoreOp::Store });
+    wgpu::RenderPassDepthStencilAttachment { view, depth_ops, stencil_ops: None }
 }
 
 /// Begins a pass with one colour, if any, and depths.
@@ -218,11 +232,7 @@ fn begin<'e>(
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(name),
         color_attachments: colour.map(Some).as_slice(),
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: depth,
-            depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
-            stencil_ops: None,
-        }),
+        depth_stencil_attachment: Some(depth_attachment(depth, load)),
         timestamp_writes,
         ..Default::default()
     })
