@@ -40,10 +40,10 @@ pub(super) fn presets(preset: &Preset) -> Result<Vec<Preset>> {
     preset.regions.iter().map(load).collect()
 }
 
-/// What parts carry: one coat primitive for each tile that some triangle of a part carries alone, and one for each pair that share
+/// What some `parts` of a task carry: one coat primitive for each tile that some triangle of a part carries alone, and one for each pair that share
 /// triangles. `tiles` are the task's own and those of `presets`, `shares` what [`shares`] gives.
 pub(super) fn wear_all(
-    task: &Task<'_>,
+    (task, parts): (&Task<'_>, &[usize]),
     own: &Groomed,
     patches: &Patches,
     (presets, tiles, shares): (&[Preset], &[Tile], &[Vec<f32>]),
@@ -52,7 +52,7 @@ pub(super) fn wear_all(
     let mut fields = vec![own.fields.clone()];
     for preset in presets {
         let groomed = task.groom(preset, steps)?;
-        fields.push(groomed.cut(|part| task.parts.contains(&(part as usize))).fields);
+        fields.push(groomed.cut(|part| parts.contains(&(part as usize))).fields);
     }
     let axes = axes(own.mesh(), &own.fields.direction, patches);
     let mixed = Mixed::new(own.mesh(), &fields, tiles, shares);
@@ -140,6 +140,11 @@ fn beside(task: &Task<'_>, own: &Groomed, material: &str, reach: Option<Length>,
         .filter(of_material)
         .flat_map(|(triangle, _)| triangle.map(class))
         .collect();
+    // A coarser level of detail may lack it.
+    let named = |&part: &usize| task.asset.parts[part].material_name == material;
+    if covered.is_empty() && task.parts.iter().any(named) {
+        return Ok(vec![0.0; mesh.positions_m.len()]);
+    }
     if covered.is_empty() {
         return Err(Error::usage("a region's material is not among those that its preset furs")
             .with_field(format!("regions[{i}].material"))
