@@ -135,6 +135,9 @@ pub struct Laid {
 pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Baked> {
     let mut steps = Steps::new(tell, request.cache.clone());
     check_output(&request.out, &[])?;
+    for preset in std::iter::once(&request.preset).chain(request.presets.iter().map(|(_, preset)| preset)) {
+        regions::check_files(preset)?;
+    }
     let mut asset = steps.run("read", || asset::load_as(&request.input, &request.reading))?;
     refuse_second(&asset)?;
     refuse_own_input(&request.input, &request.out)?;
@@ -168,9 +171,6 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
         steps: timing::Steps::default(),
         cached: None,
     };
-    let hair_m = Fibre::guard(&request.preset.guard, &request.preset.colour, scale.diagonal_m as f32).length_m;
-    let skin =
-        steps.run("weld", || weld::join(&asset, |part| chosen.contains(&part), scale.metres_per_unit, hair_m))?;
     // One tile per preset; primitives with the same preset share it. An atlas is one level's alone.
     let mut tiles: Vec<(&Preset, Vec<usize>)> = Vec::new();
     let atlas = matches!(request.method, Method::Atlas { .. });
@@ -182,6 +182,12 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
             None => tiles.push((preset, vec![index])),
         }
     }
+    for (preset, parts) in &tiles {
+        regions::check_places(&asset, parts, preset)?;
+    }
+    let hair_m = Fibre::guard(&request.preset.guard, &request.preset.colour, scale.diagonal_m as f32).length_m;
+    let skin =
+        steps.run("weld", || weld::join(&asset, |part| chosen.contains(&part), scale.metres_per_unit, hair_m))?;
     let mut carried: Vec<(usize, CoatPrimitive)> = Vec::new();
     for (preset, parts) in &tiles {
         let has_uv = parts.iter().any(|&part| !asset.parts[part].stored.uv_sets.is_empty());
