@@ -1,10 +1,11 @@
 //! Real bakes: valid where their inputs are, and taken off again to the byte.
 
 use super::{bake, says};
-use crate::common::shared;
+use crate::common::{furrier_path, shared};
 use crate::validator::{issues, new_issues};
 use furrier::asset::coat::{Input, strip};
-use furrier::asset::read_document;
+use furrier::asset::{self, read_document};
+use serde_json::json;
 
 /// Files of every kind that a bake treats in its own way, and that are quick.
 const SOME: [&str; 14] = [
@@ -23,6 +24,26 @@ const SOME: [&str; 14] = [
     "hard/sparse_accessor.glb",
     "hard/two_uv_sets.glb",
 ];
+
+#[test]
+fn what_was_mended_comes_back_as_it_was_through_the_real_binary() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let mut document = asset::load("sample:plane").unwrap().document;
+    document.json["nodes"][0]["name"] = json!("tab@");
+    let glb = document.to_glb().unwrap();
+    let at = glb.windows(4).position(|four| four == b"tab@").unwrap() + 3;
+    // A tab, half a character in Latin-1.
+    for odd in [b'\t', 0xC9] {
+        let mut bytes = glb.clone();
+        bytes[at] = odd;
+        std::fs::write(path("in.glb"), &bytes).unwrap();
+        bake(&path("in.glb"), &path("out.glb")).unwrap();
+        let mut strip = assert_cmd::Command::new(furrier_path());
+        strip.arg("strip").arg(path("out.glb")).arg("-o").arg(path("back.glb")).assert().success();
+        assert_eq!(std::fs::read(path("back.glb")).unwrap(), bytes);
+    }
+}
 
 #[test]
 fn baked_files_are_valid_and_come_back_to_the_byte() {
