@@ -28,6 +28,10 @@ cp "$images"/../recipes/* .
 "$furrier" view painted.glb --screenshot "$images/recipes/painted.png" --orbit 65,10,1 --size 480x400
 "$furrier" bake sample:creature -o leopard.glb --preset short-cat --set maps.colour=spots.png
 "$furrier" view leopard.glb --screenshot "$images/recipes/leopard.png" --orbit 50,10,1 --size 480x400
+# The commands of the recipe itself, as they stand there.
+sed -n '/^## Wet/,/^## /p' "$images/../recipes.md" | sed -n '/^```sh/,/^```$/p' | grep -v '^```' | sed "s|^furrier|\"$furrier\"|" > wet.sh
+sh wet.sh
+cp dry.png wet.png "$images/recipes"
 
 # docs/steps/patch.md, docs/steps/field.md
 "$furrier" view creature.glb --screenshot "$images/patches.png" --show patches --orbit 50,10,1 --size 800x640

@@ -2,7 +2,7 @@
 
 use crate::common::shared;
 use crate::one_skin::thin;
-use furrier::asset::axes::{Axis, upright};
+use furrier::asset::axes::{Axis, Upright};
 use furrier::asset::{self, Fallback, Reading};
 use furrier::bake::picture::{Grown, Only, PictureRequest};
 use furrier::bake::units::Units;
@@ -25,10 +25,10 @@ fn a_file_is_stood_upright_without_being_mirrored() {
         ("x", DVec3::X, None, DVec3::Z),
         ("-y", DVec3::NEG_Y, Some("+X"), DVec3::X),
     ] {
-        let turn = upright(axis(up), forward.map(axis)).unwrap();
+        let turn = Upright::of(Some(axis(up)), forward.map(axis)).unwrap().unwrap().turn();
         assert_eq!((turn * stands, turn * looks, turn.determinant()), (DVec3::Y, DVec3::Z, 1.0), "{up} {forward:?}");
     }
-    assert!(upright(axis("z"), Some(axis("-z"))).is_err());
+    assert!(Upright::of(Some(axis("z")), Some(axis("-z"))).is_err());
     assert!("w".parse::<Axis>().is_err());
 }
 
@@ -48,7 +48,7 @@ fn creature(folder: &Path) -> [std::path::PathBuf; 2] {
 }
 
 fn z_up() -> Reading {
-    Reading { upright: Some(upright(axis("z"), None).unwrap()), rebake: false }
+    Reading { upright: Upright::of(Some(axis("z")), None).unwrap().map(Upright::turn), ..Reading::default() }
 }
 
 fn request(input: &Path, reading: Reading, out: &Path) -> Request {

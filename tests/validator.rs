@@ -76,7 +76,7 @@ fn the_schema_sees_planted_faults() {
 }
 
 /// Severity and code of each issue, counted; none, with the reason said, where the validator is not installed.
-fn issues(files: &[PathBuf]) -> Option<Vec<BTreeMap<(u64, String), usize>>> {
+pub fn issues(files: &[PathBuf]) -> Option<Vec<BTreeMap<(u64, String), usize>>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/node");
     if !folder.join("node_modules/gltf-validator").is_dir() {
         skipped("the Khronos validator is not installed; run `npm ci` in tests/node");
@@ -97,7 +97,7 @@ fn issues(files: &[PathBuf]) -> Option<Vec<BTreeMap<(u64, String), usize>>> {
 }
 
 /// Kinds of errors and warnings of which the output has more than the input.
-fn new_issues(input: &BTreeMap<(u64, String), usize>, output: &BTreeMap<(u64, String), usize>) -> Vec<String> {
+pub fn new_issues(input: &BTreeMap<(u64, String), usize>, output: &BTreeMap<(u64, String), usize>) -> Vec<String> {
     let more = |(kind, count): (&(u64, String), &usize)| {
         let before = input.get(kind).copied().unwrap_or(0);
         (*count > before).then(|| format!("severity {} {}: {before} became {count}", kind.0, kind.1))

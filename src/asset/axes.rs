@@ -2,10 +2,16 @@
 
 use crate::error::{Error, Result};
 use crate::math::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
+use std::fmt;
 use std::str::FromStr;
 
+/// What axes are called.
+const NAMES: [&str; 3] = ["x", "y", "z"];
+
 /// A direction along one of a file's axes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
 pub struct Axis {
     /// 0 to 2: x, y, z.
     index: usize,
@@ -29,29 +35,68 @@ impl FromStr for Axis {
             Some(name) => (true, name),
             None => (false, text.strip_prefix('+').unwrap_or(text)),
         };
-        let index = ["x", "y", "z"].iter().position(|axis| axis.eq_ignore_ascii_case(name));
+        let index = NAMES.iter().position(|axis| axis.eq_ignore_ascii_case(name));
         index.map(|index| Self { index, negative }).ok_or("expected x, y, z, -x, -y or -z")
     }
 }
 
-/// The turn that stands an input upright: up along +y, its front towards +z.
-///
-/// # Errors
-/// When the two lie along the same axis.
-pub fn upright(up: Axis, forward: Option<Axis>) -> Result<DMat3> {
-    // Without a word on its front, what a turn from +y to `up` about x (else z) makes of +z: −y for a file with z up, as in
-    // Blender.
-    let forward = forward.unwrap_or(match (up.index, up.negative) {
-        (2, negative) => Axis { index: 1, negative: !negative },
-        _ => Axis { index: 2, negative: false },
-    });
-    if up.index == forward.index {
-        return Err(Error::usage("up and forward lie along the same axis")
-            .with_parameter("forward")
-            .with_found(["x", "y", "z"][forward.index])
-            .with_expected("another axis than that of `up`"));
+impl TryFrom<String> for Axis {
+    type Error = &'static str;
+
+    fn try_from(text: String) -> std::result::Result<Self, Self::Error> {
+        text.parse()
     }
-    let (up, forward) = (up.vector(), forward.vector());
-    // Rows: what of a vector of the file goes along x, y and z.
-    Ok(DMat3::from_cols(up.cross(forward), up, forward).transpose())
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", if self.negative { "-" } else { "" }, NAMES[self.index])
+    }
+}
+
+impl From<Axis> for String {
+    fn from(axis: Axis) -> Self {
+        axis.to_string()
+    }
+}
+
+/// How a file's axes lie that are others than glTF's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Upright {
+    up: Axis,
+    forward: Axis,
+}
+
+impl Upright {
+    /// Of the axis that is up and the one that the front looks along; none where neither is said.
+    ///
+    /// # Errors
+    /// When the two lie along the same axis.
+    pub fn of(up: Option<Axis>, forward: Option<Axis>) -> Result<Option<Self>> {
+        if up.is_none() && forward.is_none() {
+            return Ok(None);
+        }
+        let up = up.unwrap_or(Axis::Y);
+        // Without a word on its front, what a turn from +y to `up` about x (else z) makes of +z: −y for a file with z up, as in
+        // Blender.
+        let forward = forward.unwrap_or(match (up.index, up.negative) {
+            (2, negative) => Axis { index: 1, negative: !negative },
+            _ => Axis { index: 2, negative: false },
+        });
+        if up.index == forward.index {
+            return Err(Error::usage("up and forward lie along the same axis")
+                .with_parameter("forward")
+                .with_found(forward)
+                .with_expected("another axis than that of `up`"));
+        }
+        Ok(Some(Self { up, forward }))
+    }
+
+    /// The turn that stands the file upright: up along +y, its front towards +z.
+    pub fn turn(self) -> DMat3 {
+        let (up, forward) = (self.up.vector(), self.forward.vector());
+        // Rows: what of a vector of the file goes along x, y and z.
+        DMat3::from_cols(up.cross(forward), up, forward).transpose()
+    }
 }

@@ -110,15 +110,29 @@ impl Document {
 /// # Errors
 /// When it cannot be read, is of another kind, broken or too large.
 pub fn load(path: &Path) -> Result<Image8> {
+    let (bytes, format) = read(path)?;
+    decode(&bytes, format).map_err(|error| broken(path, error.to_string()))
+}
+
+/// Whether a file looks like what [`load`] decodes, at a glance.
+///
+/// # Errors
+/// When it cannot be read or is of another kind.
+pub fn check(path: &Path) -> Result<()> {
+    read(path).map(|_| ())
+}
+
+fn read(path: &Path) -> Result<(Vec<u8>, ImageFormat)> {
     let bytes = uri::read_file(path)?;
-    let broken = |found: String| {
-        Error::input("an image cannot be decoded")
-            .with_file(path)
-            .with_found(found)
-            .with_expected("a whole PNG, JPEG or WebP of a moderate size")
-    };
-    let format = format(&bytes).ok_or_else(|| broken("another kind of file".into()))?;
-    decode(&bytes, format).map_err(|error| broken(error.to_string()))
+    let format = format(&bytes).ok_or_else(|| broken(path, "another kind of file".into()))?;
+    Ok((bytes, format))
+}
+
+fn broken(path: &Path, found: String) -> Error {
+    Error::input("an image cannot be decoded")
+        .with_file(path)
+        .with_found(found)
+        .with_expected("a whole PNG, JPEG or WebP of a moderate size")
 }
 
 fn decode(bytes: &[u8], format: ImageFormat) -> image::ImageResult<Image8> {

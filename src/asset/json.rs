@@ -128,9 +128,13 @@ impl<'a> At<'a> {
         if found.len() > 60 {
             found = found.chars().take(57).chain("...".chars()).collect();
         }
-        Error::input("the glTF holds a value it must not")
+        let fault = Error::input("the glTF holds a value it must not")
             .with_field(self.path.clone())
             .with_found(found)
-            .with_expected(expected)
+            .with_expected(expected);
+        if self.value.is_null() {
+            return fault.with_hint("glTF has no null: leave out members that have no value, or export again");
+        }
+        fault
     }
 }

@@ -4,10 +4,11 @@ use super::document::Document;
 use super::image::Found;
 use super::json::At;
 use super::repair::Notes;
-use super::words::is_bare;
+use super::vrm;
 use crate::data::texture::{Texture, Wrap};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::math::{Vec2, Vec3, Vec4};
+use serde_json::json;
 
 /// The older way to state a colour, which still stands in many files.
 const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
@@ -45,12 +46,14 @@ pub struct BaseColour {
     pub factor: Vec4,
     /// Texture, where it has one that can be decoded.
     pub texture: Option<Texture>,
+    /// Why its texture is broken, which is no matter but where fur is to have its colour.
+    pub fault: Option<Box<Error>>,
 }
 
 impl Default for BaseColour {
     /// White, as the format has it.
     fn default() -> Self {
-        Self { factor: Vec4::ONE, texture: None }
+        Self { factor: Vec4::ONE, texture: None, fault: None }
     }
 }
 
@@ -78,7 +81,7 @@ impl Material {
             _ => Alpha::Opaque,
         };
         material.unlit = extension(&at, "KHR_materials_unlit").is_some();
-        material.base_colour = BaseColour::of(document, &at, &material.name, notes)?;
+        material.base_colour = BaseColour::of(document, (index, &at), &material.name, notes)?;
         Ok(material)
     }
 }
@@ -91,8 +94,8 @@ impl BaseColour {
     /// The base colour of a material; what of it is missing or cannot be decoded is left out and said.
     ///
     /// # Errors
-    /// Names images whose header is broken or claims too many pixels, where fur may need them.
-    fn of(document: &Document, material: &At<'_>, name: &str, notes: &mut Notes) -> Result<Self> {
+    /// Names what is no number or points at nothing.
+    fn of(document: &Document, (index, material): (usize, &At<'_>), name: &str, notes: &mut Notes) -> Result<Self> {
         let glossiness = extension(material, GLOSSINESS);
         let metallic = material.get("pbrMetallicRoughness");
         let (owner, keys) = match &glossiness {
@@ -102,6 +105,11 @@ impl BaseColour {
         let [factor, mut slot] = keys.map(|key| owner.and_then(|owner| owner.get(key)));
         let factor = factor.map_or(Ok([1.0; 4]), |at| at.numbers::<4>())?;
         let mut factor = Vec4::from_array(factor.map(|f| f as f32));
+        // In an avatar's own list of materials.
+        let avatar = vrm::colour(document, index);
+        factor = avatar.factor.unwrap_or(factor);
+        let texture = avatar.texture.map(|index| json!({"index": index}));
+        slot = texture.as_ref().map(At::root).or(slot);
         if owner.is_none() {
             unread(material, name, notes);
         }
@@ -119,25 +127,25 @@ impl BaseColour {
                 "material {name:?}: its emissive texture is not read, its base colour factor is used alone"
             ));
         }
-        let Some(slot) = slot else { return Ok(Self { factor, texture: None }) };
+        let plain = Self { factor, texture: None, fault: None };
+        let Some(slot) = slot else { return Ok(plain) };
         let Some(texture) = texture_of(document, &slot)? else {
             let fault = unknown_source(document, &slot)?;
             notes.warn(format!("material {name:?}: its texture {fault}; the base colour factor is used alone"));
-            return Ok(Self { factor, texture: None });
+            return Ok(plain);
         };
         let image = texture.image;
         let uri = document.root().entry("images", image)?.get("uri").and_then(|u| u.value.as_str());
         let file = uri.filter(|u| !u.starts_with("data:")).map_or(String::new(), |u| format!(" ({u})"));
         let fault = match document.find_image(image) {
-            Ok(Found::Usable { .. }) => return Ok(Self { factor, texture: Some(texture) }),
+            Ok(Found::Usable { .. }) => return Ok(Self { texture: Some(texture), ..plain }),
             Ok(Found::Missing) => "is not there".to_owned(),
             Ok(Found::Unusable(fault)) => fault,
             // What gets no fur is no reason to stop.
-            Err(error) if is_bare(name) => error.what,
-            Err(error) => return Err(error),
+            Err(error) => return Ok(Self { fault: Some(Box::new(error)), ..plain }),
         };
         notes.warn(format!("images[{image}]{file} {fault}; the base colour factor of material {name:?} is used alone"));
-        Ok(Self { factor, texture: None })
+        Ok(plain)
     }
 }
 

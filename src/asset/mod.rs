@@ -34,6 +34,8 @@ mod subject;
 mod text;
 mod uri;
 mod validate;
+mod variants;
+mod vrm;
 mod words;
 pub mod write;
 
@@ -42,6 +44,7 @@ pub use document::Document;
 pub use part::Part;
 pub use pose::{Pose, Posed};
 pub use select::{Selection, select};
+pub use variants::Variant;
 pub use words::is_bare;
 
 use crate::error::Result;
@@ -62,16 +65,20 @@ pub struct Asset {
     pub diagonal_units: f64,
     /// What was repaired or passed over, one sentence each.
     pub warnings: Vec<String>,
+    /// What was decided for the user, one sentence each.
+    pub notes: Vec<String>,
 }
 
 /// How an input is to be read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reading {
-    /// Turns the file's axes so that its up is +y and its front looks to +z ([`axes::upright`]). The asset is combed, lit and
+    /// Turns the file's axes so that its up is +y and its front looks to +z ([`axes::Upright`]). The asset is combed, lit and
     /// seen that way; what is written keeps the file's own. None where these are glTF's.
     pub upright: Option<DMat3>,
     /// Whether a coat that the input wears already is taken off first.
     pub rebake: bool,
+    /// Whether all levels of detail are parts, or the finest alone.
+    pub lods: bool,
 }
 
 /// Reads a `.glb`, `.gltf` or `.obj` file, or `sample:NAME`, a mesh made in code.
@@ -95,7 +102,7 @@ pub fn load_as(input: &str, reading: &Reading) -> Result<Asset> {
         document = coat::bared(document, &mut warnings)?;
     }
     let name = document.name.clone();
-    Asset::standing(document, warnings, reading.upright).map_err(|error| error.with_file(name))
+    Asset::standing(document, warnings, reading).map_err(|error| error.with_file(name))
 }
 
 /// The document of a file, and what was odd about it.
@@ -121,15 +128,15 @@ impl Asset {
     /// # Errors
     /// Names what cannot be used.
     pub fn new(document: Document, warnings: Vec<String>) -> Result<Self> {
-        Self::standing(document, warnings, None)
+        Self::standing(document, warnings, &Reading::default())
     }
 
-    /// As [`Self::new`], with the axes of a document that has others than glTF's turned by `upright`.
-    fn standing(mut document: Document, warnings: Vec<String>, upright: Option<DMat3>) -> Result<Self> {
-        let scene = SceneGraph { upright, ..SceneGraph::of(&document)? };
-        let mut notes = repair::Notes { warnings, mended: Vec::new() };
-        let (parts, diagonal_units) = part::collect(&document, &scene, &mut notes)?;
+    /// As [`Self::new`], read in a way of one's own.
+    fn standing(mut document: Document, warnings: Vec<String>, reading: &Reading) -> Result<Self> {
+        let scene = SceneGraph { upright: reading.upright, ..SceneGraph::of(&document)? };
+        let mut notes = repair::Notes { warnings, ..repair::Notes::default() };
+        let (parts, diagonal_units) = part::collect(&document, &scene, reading.lods, &mut notes)?;
         repair::apply(&mut document, &mut notes)?;
-        Ok(Self { document, scene, parts, diagonal_units, warnings: notes.warnings })
+        Ok(Self { document, scene, parts, diagonal_units, warnings: notes.warnings, notes: notes.told })
     }
 }

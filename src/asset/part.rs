@@ -6,9 +6,13 @@ use super::material::{Alpha, BaseColour, Material};
 use super::repair::Notes;
 use super::scene_graph::SceneGraph;
 use super::stored::Primitive;
+use super::variants::{Variant, variants};
 use crate::data::mesh::Mesh;
 use crate::error::{Error, Result};
 use crate::math::{DAffine3, DMat3, DMat4, DVec3, Vec3};
+
+/// What is smaller than this share of the largest part is a point to it.
+const POINT: f64 = 1e-6;
 
 /// A triangle primitive of the default scene. Mesh vertices are the stored vertices, in their order: those that its triangles
 /// use.
@@ -34,8 +38,10 @@ pub struct Part {
     pub unlit: bool,
     /// Names of its mesh and nodes, where the mesh has no other part.
     pub labels: Vec<String>,
-    /// Names of the material variants in which it has another material.
-    pub variants: Vec<String>,
+    /// Which level of detail it is; 0 is the finest.
+    pub level: u32,
+    /// Material variants in which it has another colour.
+    pub variants: Vec<Variant>,
     /// Vertex data in the primitive's own space.
     pub stored: Primitive,
     /// Middle of the whole scene, file units: the origin of every part's mesh.
@@ -178,24 +184,41 @@ pub(super) fn world_normal(map: &DMat3, normal: Vec3) -> Vec3 {
     turned.try_normalize().unwrap_or(normal.as_dvec3()).as_vec3()
 }
 
-/// Every part of the default scene, centred on the scene's middle, and the scene's bounding diagonal in file units.
+/// Every part of the default scene, centred on the scene's middle, and the scene's bounding diagonal in file units: of its
+/// finest levels of detail, or of all of them where they are asked for.
 ///
 /// # Errors
 /// Names what cannot be used; also when there is no triangle at all.
-pub fn collect(document: &Document, scene: &SceneGraph, notes: &mut Notes) -> Result<(Vec<Part>, f64)> {
+pub fn collect(
+    document: &Document,
+    scene: &SceneGraph,
+    all_levels: bool,
+    notes: &mut Notes,
+) -> Result<(Vec<Part>, f64)> {
     let root = document.root();
     let nodes = root.list("nodes")?;
     let world = scene.world(&scene.local);
     let mut instances: Vec<Vec<usize>> = vec![Vec::new(); document.count("meshes")];
-    for &node in &scene.shown {
+    let linked = (0..nodes.len()).filter(|&node| scene.levels.linked[node] && !scene.shown.contains(&node));
+    for node in scene.shown.iter().copied().chain(linked) {
         if let Some(mesh) = nodes[node].reference("mesh", "meshes", instances.len())?
-            && !scene.levels.coarser[node]
+            && (all_levels || scene.levels.level[node] == 0)
         {
             instances[mesh].extend(scene.placed(node));
         }
     }
-    for note in &scene.levels.notes {
-        notes.warn(note.clone());
+    for (finest, coarser) in &scene.levels.groups {
+        let coarser = coarser.join(", ");
+        if all_levels {
+            notes.told.push(format!(
+                "levels of detail are furred each by itself: {finest}, {coarser}; `furrier view` draws the first alone"
+            ));
+        } else {
+            notes.warn(format!(
+                "coarser levels of detail of {finest}, which alone is furred and drawn: {coarser} stay as they are, without \
+                 fur; `lods` furs them too"
+            ));
+        }
     }
     let mut parts = Vec::new();
     let mut passed_over = 0;
@@ -247,11 +270,13 @@ pub fn collect(document: &Document, scene: &SceneGraph, notes: &mut Notes) -> Re
                 alpha: material.alpha,
                 unlit: material.unlit,
                 labels: labels.clone(),
-                variants: variants(document, at, index)?,
+                level: nodes_of.iter().map(|&node| scene.levels.level[scene.of_document(node)]).min().unwrap_or(0),
+                variants: Vec::new(),
                 stored,
                 centre_units: DVec3::ZERO,
                 world_from_local: Vec::new(),
             };
+            let part = Part { variants: variants(document, at, index, &part.base_colour)?, ..part };
             match part.place(scene, &world) {
                 Ok(part) => parts.push(part),
                 // Programs hide things by a scale of zero.
@@ -263,6 +288,7 @@ pub fn collect(document: &Document, scene: &SceneGraph, notes: &mut Notes) -> Re
             }
         }
     }
+    leave_out_points(&mut parts, notes);
     if passed_over > 0 {
         notes.warn(format!("{passed_over} primitives of points or lines passed over"));
     }
@@ -276,7 +302,10 @@ pub fn collect(document: &Document, scene: &SceneGraph, notes: &mut Notes) -> Re
             .with_expected("at least one primitive of triangles")
             .with_hint("export the mesh with faces, in the scene that is shown"));
     }
-    let points = || parts.iter().flat_map(|part| (0..part.vertices()).map(|v| part.world_units(v)));
+    // Coarser levels of detail change nothing in the finest.
+    let finest = parts.iter().map(|part| part.level).min();
+    let measured = || parts.iter().filter(|part| Some(part.level) == finest);
+    let points = || measured().flat_map(|part| (0..part.vertices()).map(|v| part.world_units(v)));
     let low = points().fold(DVec3::INFINITY, DVec3::min);
     let high = points().fold(DVec3::NEG_INFINITY, DVec3::max);
     if !(low.is_finite() && high.is_finite()) {
@@ -286,6 +315,32 @@ pub fn collect(document: &Document, scene: &SceneGraph, notes: &mut Notes) -> Re
     Ok((parts, (high - low).length()))
 }
 
+/// Leaves out parts that a scale has made so small that single precision has one point for them, beside others that it has not.
+fn leave_out_points(parts: &mut Vec<Part>, notes: &mut Notes) {
+    let points = |part: &Part| (0..part.vertices()).map(|v| part.world_units(v)).collect::<Vec<DVec3>>();
+    let sizes: Vec<f64> = parts.iter().map(|part| diagonal(points(part).into_iter())).collect();
+    let largest = sizes.iter().copied().fold(0.0, f64::max);
+    let mut sizes = sizes.into_iter();
+    parts.retain(|part| {
+        let size = sizes.next().unwrap_or(largest);
+        let kept = size > POINT * largest || !largest.is_finite();
+        if !kept {
+            let place = format!("meshes[{}].primitives[{}]", part.mesh, part.primitive);
+            let nodes = part.nodes.first().copied().unwrap_or_default();
+            notes.warn(format!(
+                "{place}: its nodes' scale leaves it {size:.1e} units across (nodes[{nodes}]), a point beside what is {largest:.1e}; \
+                 left without fur"
+            ));
+        }
+        kept
+    });
+}
+
+fn diagonal(points: impl Iterator<Item = DVec3>) -> f64 {
+    let (low, high) = points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    (high - low).length()
+}
+
 /// The names of a mesh of one primitive, and of the nodes that show it.
 fn labels<'a>(mesh: &At<'_>, nodes: impl Iterator<Item = &'a At<'a>>) -> Result<Vec<String>> {
     if mesh.list("primitives")?.len() > 1 {
@@ -293,24 +348,4 @@ fn labels<'a>(mesh: &At<'_>, nodes: impl Iterator<Item = &'a At<'a>>) -> Result<
     }
     let name = |at: &At<'_>| at.get("name").and_then(|name| name.value.as_str()).map(str::to_owned);
     Ok(name(mesh).into_iter().chain(nodes.filter_map(name)).collect())
-}
-
-/// Names of the variants (KHR_materials_variants) in which a primitive has another material than its own.
-fn variants(document: &Document, primitive: &At<'_>, own: Option<usize>) -> Result<Vec<String>> {
-    const NAME: &str = "KHR_materials_variants";
-    let member =
-        |owner: &At<'_>| owner.get("extensions").and_then(|extensions| extensions.get(NAME).map(|at| at.value.clone()));
-    let Some(mappings) = member(primitive) else { return Ok(Vec::new()) };
-    let all = member(&document.root()).unwrap_or_default();
-    let mut names = Vec::new();
-    for mapping in mappings["mappings"].as_array().into_iter().flatten() {
-        if mapping["material"].as_u64().map(|material| material as usize) == own {
-            continue;
-        }
-        for variant in mapping["variants"].as_array().into_iter().flatten().filter_map(serde_json::Value::as_u64) {
-            let name = all["variants"][variant as usize]["name"].as_str();
-            names.push(name.map_or_else(|| format!("variant {variant}"), str::to_owned));
-        }
-    }
-    Ok(names)
 }

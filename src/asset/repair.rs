@@ -14,6 +14,8 @@ use std::collections::{HashMap, HashSet};
 pub struct Notes {
     /// One sentence each.
     pub warnings: Vec<String>,
+    /// What was decided, one sentence each.
+    pub told: Vec<String>,
     /// Accessors whose stored values no reader could use, with values that can be: they go into the output.
     pub mended: Vec<Mended>,
 }

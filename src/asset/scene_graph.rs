@@ -122,7 +122,7 @@ impl SceneGraph {
             Some(shown) => spread(shown.list("nodes")?.iter().map(At::size).collect::<Result<_>>()?),
             None => scene.order.clone(),
         };
-        scene.levels = Levels::of(&nodes, document, &scene.parent, &scene.order)?;
+        scene.levels = Levels::of(&nodes, document, &scene.parent, (&scene.order, &scene.shown))?;
         let invisible = |at: &At<'_>| {
             let visible = at.get("extensions").and_then(|e| e.get("KHR_node_visibility")?.get("visible"));
             visible.is_some_and(|visible| visible.value.as_bool() == Some(false))

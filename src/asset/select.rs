@@ -16,6 +16,8 @@ pub struct Selection {
     pub parts: Vec<usize>,
     /// What was left out and by what it was told, where the choice was left to us.
     pub note: Option<String>,
+    /// What is broken and gets no fur, one sentence each.
+    pub warnings: Vec<String>,
 }
 
 /// Why a part has no fur.
@@ -32,8 +34,28 @@ enum Bare {
 /// Chooses the parts to fur.
 ///
 /// # Errors
-/// Lists the materials there are when a name is unknown, or when all of them are bare.
+/// Lists the materials there are when a name is unknown, or when all of them are bare; names a broken image whose colour
+/// the fur should have.
 pub fn select(parts: &[Part], names: &[String]) -> Result<Selection> {
+    let mut selection = choose(parts, names)?;
+    for (index, part) in parts.iter().enumerate() {
+        let Some(fault) = &part.base_colour.fault else { continue };
+        if selection.parts.contains(&index) {
+            return Err(Error::clone(fault));
+        }
+        let place = fault.field.as_deref().unwrap_or_default();
+        let warning = format!(
+            "{}: {place}, of material {:?}; its base colour factor is used alone, as it gets no fur",
+            fault.what, part.material_name
+        );
+        if !selection.warnings.contains(&warning) {
+            selection.warnings.push(warning);
+        }
+    }
+    Ok(selection)
+}
+
+fn choose(parts: &[Part], names: &[String]) -> Result<Selection> {
     let known = || {
         let mut known: Vec<&str> = parts.iter().map(|part| part.material_name.as_str()).collect();
         known.dedup();
@@ -47,7 +69,7 @@ pub fn select(parts: &[Part], names: &[String]) -> Result<Selection> {
     }
     if !names.is_empty() {
         let named = (0..parts.len()).filter(|&i| names.contains(&parts[i].material_name)).collect();
-        return Ok(Selection { parts: named, note: None });
+        return Ok(Selection { parts: named, ..Selection::default() });
     }
     let by_material: Vec<Option<Bare>> =
         parts.iter().map(|part| bare_word(&part.material_name).map(Bare::Word)).collect();
@@ -67,7 +89,7 @@ pub fn select(parts: &[Part], names: &[String]) -> Result<Selection> {
             .with_expected(known())
             .with_hint("name the material to fur with `material`"));
     }
-    Ok(Selection { note: note(parts, &chosen, &reasons), parts: chosen })
+    Ok(Selection { note: note(parts, &chosen, &reasons), parts: chosen, warnings: Vec::new() })
 }
 
 /// By the name of its mesh or of a node that shows it, where all of the mesh has that name.

@@ -132,7 +132,12 @@ pub fn decode_base64(text: &str, field: &str) -> Result<Vec<u8>> {
 /// # Errors
 /// Says why it cannot be read.
 pub fn read_file(path: &Path) -> Result<Vec<u8>> {
-    let fail = |error: std::io::Error| Error::input(format!("cannot read the file: {error}")).with_file(path);
+    let fail = |error: std::io::Error| {
+        Error::input("cannot read the file")
+            .with_file(path)
+            .with_found(error)
+            .with_expected("a file that is there and may be read")
+    };
     let mut file = File::open(path).map_err(fail)?;
     let about = file.metadata().map_err(fail)?;
     if !about.is_file() {

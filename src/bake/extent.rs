@@ -90,7 +90,11 @@ pub fn figure<'a>(asset: &'a Asset, chosen: &[usize]) -> Vec<&'a Part> {
     let furred = || chosen.iter().map(|&i| &asset.parts[i]);
     let meshes: BTreeSet<usize> = furred().map(|part| part.mesh).collect();
     let skeletons: BTreeSet<usize> = furred().filter_map(root).collect();
-    let belongs = |part: &&Part| meshes.contains(&part.mesh) || root(part).is_some_and(|r| skeletons.contains(&r));
+    let levels: BTreeSet<u32> = furred().map(|part| part.level).collect();
+    let belongs = |part: &&Part| {
+        let joined = meshes.contains(&part.mesh) || root(part).is_some_and(|r| skeletons.contains(&r));
+        joined && levels.contains(&part.level)
+    };
     asset.parts.iter().filter(belongs).collect()
 }
 

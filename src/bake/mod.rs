@@ -9,10 +9,12 @@ mod finest;
 pub mod picture;
 pub mod recipe;
 mod regions;
+mod sets;
 mod skin;
 mod steps;
 mod textures;
 mod tiles;
+mod unfollowed;
 pub mod units;
 mod wear;
 mod weld;
@@ -40,6 +42,7 @@ use std::time::Instant;
 use steps::Steps;
 use textures::Textures;
 use tiles::tile_of;
+use unfollowed::variants;
 use units::{Scale, Units};
 use weld::Skin;
 
@@ -132,6 +135,9 @@ pub struct Laid {
 pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Baked> {
     let mut steps = Steps::new(tell, request.cache.clone());
     check_output(&request.out, &[])?;
+    for preset in std::iter::once(&request.preset).chain(request.presets.iter().map(|(_, preset)| preset)) {
+        regions::check_files(preset)?;
+    }
     let mut asset = steps.run("read", || asset::load_as(&request.input, &request.reading))?;
     refuse_second(&asset)?;
     refuse_own_input(&request.input, &request.out)?;
@@ -149,9 +155,10 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
     if let Method::Uv(set) = request.method {
         need_uv_set(set, chosen.iter().map(|&i| asset.parts[i].stored.uv_sets.len()).max().unwrap_or(0))?;
     }
-    let scale = units::scale(request.units, &request.preset, &asset, &chosen, request.input.starts_with("sample:"))?;
-    let mut notes: Vec<String> = selection.note.into_iter().chain(scale.note.clone()).collect();
-    let mut warnings = [&asset.warnings[..], &unfollowed(&asset, &chosen), &scale.warnings].concat();
+    let finest = sets::finest(&asset, &chosen);
+    let scale = units::scale(request.units, &request.preset, &asset, &finest, request.input.starts_with("sample:"))?;
+    let mut notes: Vec<String> = asset.notes.iter().cloned().chain(selection.note).chain(scale.note.clone()).collect();
+    let mut warnings = [&asset.warnings[..], &selection.warnings, &variants(&asset, &chosen), &scale.warnings].concat();
     let mut coat = Coat { metres_per_unit: scale.metres_per_unit, ..Coat::default() };
     let mut baked = Baked {
         coat: Coat::default(),
@@ -164,18 +171,23 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
         steps: timing::Steps::default(),
         cached: None,
     };
-    let hair_m = Fibre::guard(&request.preset.guard, &request.preset.colour, scale.diagonal_m as f32).length_m;
-    let skin =
-        steps.run("weld", || weld::join(&asset, |part| chosen.contains(&part), scale.metres_per_unit, hair_m))?;
-    // One tile per preset; primitives with the same preset share it.
+    // One tile per preset; primitives with the same preset share it. An atlas is one level's alone.
     let mut tiles: Vec<(&Preset, Vec<usize>)> = Vec::new();
+    let atlas = matches!(request.method, Method::Atlas { .. });
     for &index in &chosen {
         let preset = preset_of(request, &asset.parts[index]);
-        match tiles.iter_mut().find(|(of_tile, _)| *of_tile == preset) {
+        let apart = |parts: &[usize]| atlas && asset.parts[parts[0]].level != asset.parts[index].level;
+        match tiles.iter_mut().find(|(of_tile, parts)| *of_tile == preset && !apart(parts)) {
             Some((_, parts)) => parts.push(index),
             None => tiles.push((preset, vec![index])),
         }
     }
+    for (preset, parts) in &tiles {
+        regions::check_places(&asset, parts, preset)?;
+    }
+    let hair_m = Fibre::guard(&request.preset.guard, &request.preset.colour, scale.diagonal_m as f32).length_m;
+    let skin =
+        steps.run("weld", || weld::join(&asset, |part| chosen.contains(&part), scale.metres_per_unit, hair_m))?;
     let mut carried: Vec<(usize, CoatPrimitive)> = Vec::new();
     for (preset, parts) in &tiles {
         let has_uv = parts.iter().any(|&part| !asset.parts[part].stored.uv_sets.is_empty());
@@ -278,9 +290,10 @@ fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: 
     let all = task.groom(task.preset, steps)?;
     // An asset's own coordinates are every part's by itself; passages between presets need all parts.
     let alone = matches!(request.method, Method::Uv(_)) && others.is_empty();
-    let sets: Vec<&[usize]> = if alone { task.parts.chunks(1).collect() } else { vec![task.parts] };
+    let sets = sets::laid_out_together(task.asset, task.parts, alone);
     let cut = |parts: &[usize]| all.cut(|part| parts.contains(&(part as usize)));
-    let shares = if others.is_empty() { Vec::new() } else { regions::shares(task, &cut(task.parts))? };
+    let share = |parts: &Vec<usize>| regions::shares(task, &cut(parts));
+    let shares: Vec<_> = if others.is_empty() { Vec::new() } else { sets.iter().map(share).collect::<Result<_>>()? };
     let (mut tiles, mut accuracy) = (Vec::new(), Vec::new());
     for preset in std::iter::once(task.preset).chain(&others) {
         let (tile, rows) = tile_of(task, preset, steps)?;
@@ -288,7 +301,7 @@ fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: 
         accuracy.extend(rows);
     }
     let (mut carried, mut warnings, mut laid, mut notes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for parts in sets {
+    for (set, parts) in sets.iter().enumerate() {
         let groomed = steps.run("groom", || cut(parts));
         let (direction, edge_m) = (&groomed.fields.direction, tiles[0].edge_m);
         let start = Instant::now();
@@ -311,7 +324,7 @@ fn coat_parts(task: &Task<'_>, method: impl Fn(u64) -> Parameterisation, steps: 
         let worn = if others.is_empty() {
             steps.run("coat primitives", || task.coat_primitives(&groomed, &patches, &tiles[0]))
         } else {
-            regions::wear_all(task, &groomed, &patches, (&others, &tiles, &shares), steps)?
+            regions::wear_all((task, parts), &groomed, &patches, (&others, &tiles, &shares[set]), steps)?
         };
         notes.extend(finest::notes(&groomed, &task.materials(parts), &worn, request.method, None));
         carried.extend(worn);
@@ -338,19 +351,6 @@ fn names<'a>(parts: impl Iterator<Item = &'a Part>) -> Vec<String> {
         }
     }
     names
-}
-
-/// What changes the colour of furred skin and not that of the fur on it: material variants.
-fn unfollowed(asset: &Asset, chosen: &[usize]) -> Vec<String> {
-    let of = |part: &Part| {
-        let names = part.variants.join(", ");
-        let name = &part.material_name;
-        format!("fur keeps the colour of material {name:?}; its skin has another in the material variants {names}")
-    };
-    let mut told: Vec<String> =
-        chosen.iter().map(|&i| &asset.parts[i]).filter(|part| !part.variants.is_empty()).map(of).collect();
-    told.dedup();
-    told
 }
 
 /// Fails before the work, not after it, when the output is the input.

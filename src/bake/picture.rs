@@ -1,8 +1,9 @@
 //! A picture of an asset's fur by the hybrid renderer, without baking it.
 
 use super::skin::{self, Groomed, Role};
+use super::unfollowed::variants;
 use super::units::{self, Units};
-use super::{unfollowed, weld};
+use super::weld;
 use crate::asset::strands::Export;
 use crate::asset::{self, Asset, Part, Pose, Reading};
 use crate::coat::hair::TileHair;
@@ -93,7 +94,8 @@ impl Grown {
         let scale = units::scale(request.units, preset, &asset, &chosen, request.input.starts_with("sample:"))?;
         let mut notes = asset.warnings.clone();
         notes.extend(selection.note);
-        notes.extend(unfollowed(&asset, &chosen));
+        notes.extend(selection.warnings);
+        notes.extend(variants(&asset, &chosen));
         notes.extend(scale.note.iter().chain(&scale.warnings).cloned());
         let pose = match &request.pose {
             Some((animation, seconds)) => {

@@ -3,6 +3,7 @@
 use super::units::Units;
 use super::{Method, Request};
 use crate::asset::Reading;
+use crate::asset::axes::{Axis, Upright};
 use crate::asset::coat::Fallback;
 use crate::error::{Error, Result};
 use crate::preset::Preset;
@@ -45,6 +46,12 @@ pub struct Choices {
     pub seed: u64,
     /// What viewers without the extension see.
     pub fallback: Fallback,
+    /// Which axis of the file is up; glTF's where none is named.
+    pub up: Option<Axis>,
+    /// Which of them its front looks along.
+    pub forward: Option<Axis>,
+    /// Whether coarser levels of detail are furred too.
+    pub lods: bool,
 }
 
 impl Default for Choices {
@@ -60,6 +67,9 @@ impl Default for Choices {
             texture_size: None,
             seed: 0,
             fallback: Fallback::Shells(8),
+            up: None,
+            forward: None,
+            lods: false,
         }
     }
 }
@@ -82,6 +92,12 @@ pub struct Recipe {
     pub seed: u64,
     /// What viewers without the extension see.
     pub fallback: Fallback,
+    /// How the file's axes lie, where not as glTF's.
+    #[serde(default)]
+    pub upright: Option<Upright>,
+    /// Whether coarser levels of detail are furred too.
+    #[serde(default)]
+    pub lods: bool,
 }
 
 impl Choices {
@@ -131,6 +147,8 @@ impl Choices {
             },
             seed: self.seed,
             fallback: self.fallback,
+            upright: Upright::of(self.up, self.forward)?,
+            lods: self.lods,
         })
     }
 
@@ -149,11 +167,16 @@ impl Recipe {
         std::iter::once(&self.preset).chain(self.presets.iter().map(|(_, preset)| preset))
     }
 
+    /// How its inputs are read.
+    pub fn reading(&self) -> Reading {
+        Reading { upright: self.upright.map(Upright::turn), lods: self.lods, ..Reading::default() }
+    }
+
     /// A bake of `input` into `out`.
     pub fn request(&self, input: &str, out: &Path, judge: bool) -> Request {
         Request {
             input: input.to_owned(),
-            reading: Reading::default(),
+            reading: self.reading(),
             out: out.to_owned(),
             preset: self.preset.clone(),
             presets: self.presets.clone(),

@@ -1,10 +1,10 @@
 //! Several presets on one part: which tile each triangle carries, and where one passes into another.
 
-use super::Task;
 use super::skin::{Groomed, OF_PRESET};
 use super::steps::Steps;
 use super::wear::subset;
-use crate::asset::image;
+use super::{Task, names};
+use crate::asset::{Asset, image};
 use crate::coat::axes::axes;
 use crate::data::coat::{Blend, CoatPrimitive, Tile};
 use crate::data::distance::along_edges;
@@ -40,10 +40,60 @@ pub(super) fn presets(preset: &Preset) -> Result<Vec<Preset>> {
     preset.regions.iter().map(load).collect()
 }
 
-/// What parts carry: one coat primitive for each tile that some triangle of a part carries alone, and one for each pair that share
+/// Looks for the files that a preset names, before any work.
+///
+/// # Errors
+/// Where one is not there, or of another kind.
+pub(super) fn check_files(preset: &Preset) -> Result<()> {
+    let maps = &preset.maps;
+    let maps = [&maps.density, &maps.length, &maps.comb, &maps.colour, &maps.clump];
+    let all = maps.into_iter().chain(preset.regions.iter().map(|region| &region.map));
+    all.flatten().try_for_each(|map| image::check(map))?;
+    presets(preset).map(|_| ())
+}
+
+/// Whether the regions of a preset have a place on the `parts` that it furs, as [`shares`] needs it: before hair lies.
+///
+/// # Errors
+/// Names the region that has none.
+pub(super) fn check_places(asset: &Asset, parts: &[usize], preset: &Preset) -> Result<()> {
+    let parts = || parts.iter().map(|&part| &asset.parts[part]);
+    for (i, region) in preset.regions.iter().enumerate() {
+        let has_uv = asset.parts.iter().any(|part| !part.stored.uv_sets.is_empty());
+        let has_region = asset.parts.iter().any(|part| part.stored.fur_region.is_some());
+        match (&region.material, &region.map) {
+            (Some(material), _) if !parts().any(|part| part.material_name == *material) => {
+                return Err(no_material(i, material, &names(parts()).join(", ")));
+            }
+            (None, Some(_)) if !has_uv => return Err(no_place(i, region, NO_UV)),
+            (None, None) if !has_region => return Err(no_place(i, region, NOWHERE)),
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// What is wrong with a region's place, and what would do.
+const NO_UV: [&str; 2] = ["a region's map needs texture coordinates", "a mesh with a UV set"];
+const NOWHERE: [&str; 2] =
+    ["a region has no place", "a map, a material, or a mesh with the vertex attribute _FUR_REGION"];
+
+fn no_place(i: usize, region: &Region, [what, expected]: [&str; 2]) -> Error {
+    let found = region.map.as_ref().map_or("none".into(), |map| map.display().to_string());
+    Error::usage(what).with_field(format!("regions[{i}].map")).with_found(found).with_expected(expected)
+}
+
+fn no_material(i: usize, material: &str, known: &str) -> Error {
+    Error::usage("a region's material is not among those that its preset furs")
+        .with_field(format!("regions[{i}].material"))
+        .with_found(material)
+        .with_expected(format!("one of: {known}"))
+}
+
+/// What some `parts` of a task carry: one coat primitive for each tile that some triangle of a part carries alone, and one for each pair that share
 /// triangles. `tiles` are the task's own and those of `presets`, `shares` what [`shares`] gives.
 pub(super) fn wear_all(
-    task: &Task<'_>,
+    (task, parts): (&Task<'_>, &[usize]),
     own: &Groomed,
     patches: &Patches,
     (presets, tiles, shares): (&[Preset], &[Tile], &[Vec<f32>]),
@@ -52,7 +102,7 @@ pub(super) fn wear_all(
     let mut fields = vec![own.fields.clone()];
     for preset in presets {
         let groomed = task.groom(preset, steps)?;
-        fields.push(groomed.cut(|part| task.parts.contains(&(part as usize))).fields);
+        fields.push(groomed.cut(|part| parts.contains(&(part as usize))).fields);
     }
     let axes = axes(own.mesh(), &own.fields.direction, patches);
     let mixed = Mixed::new(own.mesh(), &fields, tiles, shares);
@@ -95,10 +145,6 @@ pub(super) fn shares(task: &Task<'_>, own: &Groomed) -> Result<Vec<Vec<f32>>> {
     let mesh = own.mesh();
     let mut shares = vec![vec![1.0]; mesh.positions_m.len()];
     for (i, region) in task.preset.regions.iter().enumerate() {
-        let fault = |what: &str, expected: &str| {
-            let error = Error::usage(what).with_field(format!("regions[{i}].map")).with_expected(expected);
-            Err(error.with_found(region.map.as_ref().map_or("none".into(), |map| map.display().to_string())))
-        };
         let of: Vec<f32> = match (&region.material, &region.map, mesh.uv_sets.first(), &mesh.fur_region) {
             (Some(material), ..) => beside(task, own, material, region.reach, i)?,
             (_, Some(map), Some(uv), _) => {
@@ -107,12 +153,9 @@ pub(super) fn shares(task: &Task<'_>, own: &Groomed) -> Result<Vec<Vec<f32>>> {
                 let told = |v: usize| !task.asset.parts[own.skin.stored[v].0 as usize].stored.uv_sets.is_empty();
                 uv.iter().enumerate().map(|(v, &uv)| if told(v) { sample(&image, uv).x } else { 0.0 }).collect()
             }
-            (_, Some(_), None, _) => return fault("a region's map needs texture coordinates", "a mesh with a UV set"),
+            (_, Some(_), None, _) => return Err(no_place(i, region, NO_UV)),
             (_, None, _, Some(attribute)) => attribute.clone(),
-            (_, None, _, None) => {
-                let expected = "a map, a material, or a mesh with the vertex attribute _FUR_REGION";
-                return fault("a region has no place", expected);
-            }
+            (_, None, _, None) => return Err(no_place(i, region, NOWHERE)),
         };
         // Vertices at one point have one share, or shells would crack where texture coordinates do.
         let mut sums = vec![(0.0, 0.0); of.len()];
@@ -140,11 +183,13 @@ fn beside(task: &Task<'_>, own: &Groomed, material: &str, reach: Option<Length>,
         .filter(of_material)
         .flat_map(|(triangle, _)| triangle.map(class))
         .collect();
+    // A coarser level of detail may lack it.
+    let named = |&part: &usize| task.asset.parts[part].material_name == material;
+    if covered.is_empty() && task.parts.iter().any(named) {
+        return Ok(vec![0.0; mesh.positions_m.len()]);
+    }
     if covered.is_empty() {
-        return Err(Error::usage("a region's material is not among those that its preset furs")
-            .with_field(format!("regions[{i}].material"))
-            .with_found(material)
-            .with_expected(format!("one of: {}", task.materials(task.parts))));
+        return Err(no_material(i, material, &task.materials(task.parts)));
     }
     let edges = mesh.triangles.iter().map(|t| t.map(class)).flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
     let away_m = along_edges(&mesh.positions_m, edges, covered);

@@ -239,7 +239,7 @@ fn paint(
             parts.push(Painted::default());
             continue;
         }
-        let BaseColour { factor, texture } = &part.base_colour;
+        let BaseColour { factor, texture, .. } = &part.base_colour;
         let has_uv = !part.stored.uv_sets.is_empty();
         // Nothing is decoded that nobody sees.
         let of_asset = preset.colour.from == ColourSource::Asset && !(colour_map.is_some() && has_uv);

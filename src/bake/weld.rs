@@ -150,7 +150,8 @@ fn welded(asset: &Asset, meshes: &[Mesh], hair_m: f32) -> Vec<Vec<u32>> {
     points
 }
 
-/// Parts whose vertices may be one: those of a mesh, and of meshes that hang on common joints.
+/// Parts whose vertices may be one: those of a mesh, and of meshes that hang on common joints. Levels of detail lie within one
+/// another and have nothing to do with each other.
 fn groups(asset: &Asset) -> Vec<Vec<usize>> {
     let joints = |part: &Part| -> Vec<usize> {
         let skins = part.skins.iter().flatten();
@@ -160,7 +161,8 @@ fn groups(asset: &Asset) -> Vec<Vec<usize>> {
     for (index, part) in asset.parts.iter().enumerate() {
         let own = joints(part);
         let (joined, apart): (Vec<_>, Vec<_>) = groups.into_iter().partition(|(parts, of)| {
-            asset.parts[parts[0]].mesh == part.mesh || of.iter().any(|joint| own.contains(joint))
+            let first = &asset.parts[parts[0]];
+            first.level == part.level && (first.mesh == part.mesh || of.iter().any(|joint| own.contains(joint)))
         });
         let mut group = (vec![index], own);
         for (parts, of) in joined {

@@ -24,7 +24,7 @@ impl Key {
     pub fn of(recipe: &Recipe) -> Result<Self> {
         let own: Result<Map<String, Value>> =
             recipe.presets.iter().map(|(material, preset)| Ok((material.clone(), resolved(preset)?))).collect();
-        let value = json!({
+        let mut value = json!({
             "preset": resolved(&recipe.preset)?,
             "presets": own?,
             "materials": recipe.materials,
@@ -33,6 +33,13 @@ impl Key {
             "seed": recipe.seed,
             "fallback": recipe.fallback,
         });
+        // What is as it always was is not named, so that what was baked before is up to date.
+        if let Some(upright) = recipe.upright {
+            value["upright"] = json!(upright);
+        }
+        if recipe.lods {
+            value["lods"] = json!(true);
+        }
         Ok(Self { digest: Digest::of(value.to_string().as_bytes()), value })
     }
 }

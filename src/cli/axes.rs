@@ -1,20 +1,20 @@
 //! The flags of every command that reads a mesh: which way up it is.
 
 use crate::asset::Reading;
-use crate::asset::axes::{Axis, upright};
+use crate::asset::axes::{Axis, Upright};
 use crate::error::Result;
 use clap::Args;
 
 /// Which way up an input is.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct AxesArgs {
     /// Which of the file's axes is up: x, y, z, -x, -y or -z; glTF's is y, scans often have z. Hair, camera and light take the
     /// file to stand so; what is written keeps its own axes
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
-    up: Option<Axis>,
+    pub up: Option<Axis>,
     /// Where its front looks [default: z, or -y with --up z]
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
-    forward: Option<Axis>,
+    pub forward: Option<Axis>,
 }
 
 impl AxesArgs {
@@ -23,8 +23,7 @@ impl AxesArgs {
     /// # Errors
     /// When both are along one axis.
     pub fn reading(&self) -> Result<Reading> {
-        let turned = self.up.is_some() || self.forward.is_some();
-        let turn = turned.then(|| upright(self.up.unwrap_or(Axis::Y), self.forward)).transpose()?;
-        Ok(Reading { upright: turn, rebake: false })
+        let upright = Upright::of(self.up, self.forward)?.map(Upright::turn);
+        Ok(Reading { upright, ..Reading::default() })
     }
 }

@@ -1,6 +1,5 @@
 //! `furrier bake`.
 
-use super::axes::AxesArgs;
 use super::cache_flags::CacheFlags;
 use super::console::Console;
 use super::output;
@@ -30,8 +29,6 @@ pub struct Bake {
     output: PathBuf,
     #[command(flatten)]
     recipe: RecipeArgs,
-    #[command(flatten)]
-    axes: AxesArgs,
     /// Take off the coat that the input wears already, as `furrier strip` does, and bake a new one
     #[arg(long)]
     rebake: bool,
@@ -93,7 +90,7 @@ impl Bake {
     pub fn run(self, console: &Console) -> Result<()> {
         self.refuse_several()?;
         let recipe = self.recipe.choices().recipe()?;
-        let reading = Reading { rebake: self.rebake, ..self.axes.reading()? };
+        let reading = Reading { rebake: self.rebake, ..recipe.reading() };
         let cache = self.cache.store();
         let request = Request { reading, cache, ..recipe.request(&self.input, &self.output, self.report.is_some()) };
         output::check(&self.output, &[Path::new(&self.input)])?;

@@ -1,5 +1,6 @@
 //! The flags that say how a coat is baked, whatever it is baked on.
 
+use super::axes::AxesArgs;
 use crate::asset::coat::Fallback;
 use crate::bake::recipe::{Choices, Layout, split_choice};
 use crate::bake::units::Units;
@@ -44,6 +45,11 @@ pub struct RecipeArgs {
     /// What programs without the extension show: the bare skin, or N shells as plain meshes
     #[arg(long, value_name = "none|shells:N", default_value = "shells:8")]
     fallback: Fallback,
+    /// Fur coarser levels of detail too (names such as `Beast_LOD1` beside `Beast_LOD0`, or MSFT_lod), each by itself
+    #[arg(long)]
+    lods: bool,
+    #[command(flatten)]
+    axes: AxesArgs,
 }
 
 impl RecipeArgs {
@@ -66,6 +72,9 @@ impl RecipeArgs {
             texture_size: self.texture_size,
             seed: self.seed,
             fallback: self.fallback,
+            up: self.axes.up,
+            forward: self.axes.forward,
+            lods: self.lods,
         }
     }
 }

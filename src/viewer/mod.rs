@@ -233,7 +233,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
     let textures = recorder.step(
         "decode textures",
         || stage::textures(asset, coat),
-        |decoded| decoded.as_ref().map_or(0, |all| all.values().map(bytes_of).sum()),
+        |decoded| decoded.as_ref().map_or(0, |all| all.images.values().map(bytes_of).sum()),
     )?;
     let outline = chart::tile_outline();
     let drawing = |chart| {
@@ -276,7 +276,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
     let marked = (options.show == Shown::Bald).then(|| bald::marked(&scene));
     let mut over_skin = marked.as_ref().map(|marked| renderer.prepare(marked)).transpose()?;
     let mut pictures = Vec::with_capacity(viewpoints.len());
-    let mut notes: Vec<String> = notes::coarsest(coat, options.level).into_iter().collect();
+    let mut notes: Vec<String> = textures.notes.iter().cloned().chain(notes::coarsest(coat, options.level)).collect();
     for viewpoint in viewpoints {
         let start = Instant::now();
         let camera = viewpoint.camera(&subject, stage.aspect())?;

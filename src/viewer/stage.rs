@@ -10,25 +10,49 @@ use crate::error::Result;
 use crate::math::{Vec2, Vec3, Vec4};
 use crate::runtime::{CoatMesh, DrawList, SkinMesh};
 use std::borrow::Cow;
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
-/// Decoded textures, by glTF image.
-pub type Textures = HashMap<usize, Image8>;
+/// Decoded textures.
+#[derive(Clone, Debug, Default)]
+pub struct Textures {
+    /// By glTF image.
+    pub images: HashMap<usize, Image8>,
+    /// What is broken and left out, one sentence each.
+    pub notes: Vec<String>,
+}
 
-/// Decodes every texture that the parts and their coat use.
+/// Decodes every texture that the parts and their coat use. Those of skin alone are left out where they are broken.
 ///
 /// # Errors
-/// Names images that are broken or too large.
+/// Names images of a coat that are broken or too large.
 pub fn textures(asset: &Asset, coat: &Coat) -> Result<Textures> {
-    let mut decoded = Textures::new();
+    let mut decoded = Textures::default();
     let of_coat = coat.primitives.iter().flat_map(|primitive| [&primitive.colour, &primitive.painted]);
-    let used = asset.parts.iter().map(|part| &part.base_colour.texture).chain(of_coat);
-    for image in used.flatten().map(|texture| texture.image) {
-        if let std::collections::hash_map::Entry::Vacant(slot) = decoded.entry(image)
+    for image in of_coat.flatten().map(|texture| texture.image) {
+        if let Entry::Vacant(slot) = decoded.images.entry(image)
             && let Some(pixels) = asset.document.decode_image(image)?
         {
             slot.insert(pixels);
         }
+    }
+    for part in &asset.parts {
+        let image = part.base_colour.texture.as_ref().map(|texture| texture.image);
+        let fault = match image.filter(|image| !decoded.images.contains_key(image)) {
+            None => part.base_colour.fault.as_deref().cloned(),
+            Some(image) => match asset.document.decode_image(image) {
+                Ok(pixels) => {
+                    decoded.images.extend(pixels.map(|pixels| (image, pixels)));
+                    None
+                }
+                Err(fault) => Some(fault),
+            },
+        };
+        let note = fault.map(|fault| {
+            let (place, name) = (fault.field.as_deref().unwrap_or_default(), &part.material_name);
+            format!("{}: {place}; material {name:?} is drawn without it", fault.what)
+        });
+        decoded.notes.extend(note.filter(|note| !decoded.notes.contains(note)));
     }
     Ok(decoded)
 }
@@ -115,7 +139,7 @@ fn painted_fur<'a>(
 /// A texture's image and what it shows beyond its borders, where it was decoded and the part has coordinates for it.
 fn shown<'a>(part: &Part, texture: Option<&Texture>, textures: &'a Textures) -> Option<(&'a Image8, [Wrap; 2])> {
     let texture = texture.filter(|texture| texture.uv_set < part.stored.uv_sets.len())?;
-    textures.get(&texture.image).map(|image| (image, texture.wrap))
+    textures.images.get(&texture.image).map(|image| (image, texture.wrap))
 }
 
 /// Where a texture is read at a vertex of the part.
@@ -242,7 +266,7 @@ fn surface<'a>(part: &Part, posed: &Posed, textures: &'a Textures) -> SkinMesh<'
     let factor = part.base_colour.factor.truncate();
     let count = posed.positions_m.len();
     let texture = part.base_colour.texture.as_ref();
-    let image = texture.and_then(|texture| textures.get(&texture.image));
+    let image = texture.and_then(|texture| textures.images.get(&texture.image));
     let set = texture.and_then(|texture| part.stored.uv_sets.get(texture.uv_set));
     let uv: Vec<Vec2> = match (texture, set) {
         (Some(texture), Some(set)) => set.iter().map(|&uv| texture.transformed(uv)).collect(),

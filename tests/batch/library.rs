@@ -2,6 +2,7 @@
 
 use super::{furrier, json, said, succeeds, triangles};
 use furrier::bake::recipe::Choices;
+use furrier::batch::key::Key;
 use furrier::batch::library::manifest::Manifest;
 use furrier::batch::library::{open, starter};
 use furrier::batch::plan::Plan;
@@ -62,6 +63,8 @@ fn what_cannot_be_is_refused_and_names_the_file() {
         ("[defaults]\noutput = \"furry/{stem}.glb\"\n", "names something that is not known"),
         ("[defaults]\npresets = [\"foxx\"]\n", "there is no such preset"),
         ("[defaults]\nfallback = \"some\"\n", "expected `none`"),
+        ("[defaults]\nup = \"w\"\n", "expected x, y, z"),
+        ("[defaults]\nup = \"z\"\nforward = \"-z\"\n", "along the same axis"),
         ("[defaults]\nset = [\"guard.length.mm=-1\"]\n", "out of range"),
         ("[[rules]]\nfiles = [\"*.fbx\"]\n", "nothing to bake"),
     ] {
@@ -72,6 +75,25 @@ fn what_cannot_be_is_refused_and_names_the_file() {
     std::fs::copy(folder.path().join("t0.obj"), folder.path().join("t0.glb")).unwrap();
     let error = plan_of(folder.path(), "").expect_err("two t0");
     assert!(error.to_string().contains("two assets have the same output"), "{error}");
+}
+
+#[test]
+fn a_library_says_of_axes_and_levels_what_bake_does() {
+    let folder = triangles(1);
+    let plan = plan_of(folder.path(), "[defaults]\nup = \"z\"\nforward = \"-x\"\nlods = true\n").unwrap();
+    let axis = |text: &str| Some(text.parse().unwrap());
+    let chosen = Choices { up: axis("z"), forward: axis("-x"), lods: true, ..Choices::default() };
+    assert_eq!(plan.recipes, [chosen.recipe().unwrap()]);
+    let request = plan.recipes[0].request("a.obj", Path::new("a.glb"), false);
+    assert!(request.reading.lods && request.reading.upright.is_some());
+    let file = folder.path().join("plan.jsonl");
+    plan.write(&file).unwrap();
+    assert_eq!(Plan::read(&file).unwrap(), plan);
+    // They are part of what an output was made from; where nothing is said of them, it is what it was.
+    let value = Key::of(&plan.recipes[0]).unwrap().value;
+    assert_eq!((&value["upright"]["forward"], &value["lods"]), (&serde_json::json!("-x"), &serde_json::json!(true)));
+    let plain = Key::of(&Choices::default().recipe().unwrap()).unwrap().value;
+    assert!(plain.get("upright").is_none() && plain.get("lods").is_none());
 }
 
 #[test]

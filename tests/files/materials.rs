@@ -122,9 +122,15 @@ fn variants_are_named() {
         json!({"KHR_materials_variants": {"variants": [{"name": "summer"}, {"name": "winter"}, {"name": "snow"}]}});
     let path = glb(&document, folder.path(), "variants.glb");
     let baked = bake(&path, &folder.path().join("out.glb")).unwrap();
-    assert!(says(&baked.warnings, &["\"Brown\"", "winter, snow"]), "{:?}", baked.warnings);
+    // Which colour it keeps, and which the skin has.
+    let words = ["\"Brown\", #957c59", "\"White\", #ffffff, in winter, snow"];
+    assert!(says(&baked.warnings, &words), "{:?}", baked.warnings);
     assert!(!says(&baked.warnings, &["summer"]));
     assert!(close(hair_colour(&path), [0.3, 0.2, 0.1]));
+    // Variants that change all but the colour change nothing of fur.
+    document.json["materials"][1] = json!({"name": "Rough", "pbrMetallicRoughness": {"baseColorFactor": [0.3, 0.2, 0.1, 1], "roughnessFactor": 0.2}});
+    let rough = bake(&glb(&document, folder.path(), "rough.glb"), &folder.path().join("out.glb")).unwrap();
+    assert!(!says(&rough.warnings, &["variants"]), "{:?}", rough.warnings);
 }
 
 #[test]

@@ -1,10 +1,14 @@
 //! Files as people have them: small relatives of what was reported of programs like this one, each with the value that is right of it.
 
+mod avatars;
 mod bare;
+mod broken;
 mod compressed;
+mod levels;
 mod materials;
 mod obj;
 mod reading;
+mod returned;
 mod scenes;
 mod wild;
 

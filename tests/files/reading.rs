@@ -40,12 +40,13 @@ fn text_that_can_be_mended_is_mended_and_said() {
         let at = text.find("PELUCHE? 🐻").unwrap();
         [&text.as_bytes()[..at], name, &text.as_bytes()[at + "PELUCHE? 🐻".len()..]].concat()
     };
-    let cases: [(&[u8], u8, &str, &[&str]); 6] = [
+    let cases: [(&[u8], u8, &str, &[&str]); 7] = [
         ("PELUCHE? 🐻".as_bytes(), 0, "PELUCHE? 🐻", &["padded with", "zeros"]),
         (b"PELUCHE\xC9", b' ', "PELUCHEÉ", &["1 bytes", "not UTF-8", "Latin-1", "PELUCHEÉ"]),
         ("ours 🐻 \u{e9}".as_bytes(), b' ', "ours 🐻 é", &[]),
         (b"fur \\ud83d!", b' ', "fur \u{fffd}!", &["half a surrogate pair", "fur"]),
         (b"\\udc3b\\ud83d\\udc3b", b' ', "\u{fffd}🐻", &["1 characters", "half a surrogate pair"]),
+        (b"tab\there \\\\", b' ', "tab\there \\", &["1 characters", "escaped", "tab"]),
         (b"C:\\\\ud83d \\ud83d\\udc3b \xC9", b' ', "C:\\ud83d 🐻 É", &["Latin-1"]),
     ];
     for (name, padding, expected, words) in cases {
@@ -54,6 +55,12 @@ fn text_that_can_be_mended_is_mended_and_said() {
         assert_eq!(asset.document.json["nodes"][0]["name"], expected);
         assert_eq!(asset.warnings.len(), usize::from(!words.is_empty()), "{:?}", asset.warnings);
         assert!(words.is_empty() || says(&asset.warnings, words), "{words:?}: {:?}", asset.warnings);
+    }
+    // Zeros before spaces, and what memory held before.
+    for (behind, word) in [(&b"\0\0\0\0  "[..], "4 zeros"), (b"\xCD\xCD\xCD", "3 bytes of anything")] {
+        let text = [document.json.to_string().as_bytes(), behind].concat();
+        let asset = load(&put(folder.path(), "odd.glb", with_text(&document, &text, b' ')));
+        assert!(says(&asset.warnings, &["the JSON is padded with", word]), "{word}: {:?}", asset.warnings);
     }
     // What is no JSON even so is refused as before.
     let path = put(folder.path(), "odd.glb", with_text(&document, b"{\"asset\": \xC9}", b' '));
@@ -81,6 +88,7 @@ fn what_is_hidden_by_a_scale_of_zero_gets_no_fur() {
     for transform in [
         json!({"scale": [0, 0, 0]}),
         json!({"scale": [1, 0, 1]}),
+        json!({"scale": [1e-30, 1e-30, 1e-30]}),
         json!({"matrix": [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 1]}),
     ] {
         let path = glb(&with_prop(&transform), folder.path(), "prop.glb");

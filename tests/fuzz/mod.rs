@@ -193,6 +193,17 @@ fn an_exr_that_claims_a_huge_size_is_refused() {
 }
 
 #[test]
+fn a_file_that_is_named_and_not_there_is_told_with_what_was_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("in.gltf");
+    let text = r#"{"asset": {"version": "2.0"}, "buffers": [{"uri": "x", "byteLength": 4}]}"#;
+    std::fs::write(&path, text).unwrap();
+    let error = furrier::asset::load(&path.to_string_lossy()).unwrap_err();
+    assert_eq!(error.field.as_deref(), Some("buffers[0].uri"), "{error}");
+    assert!(error.file.is_some() && error.found.is_some(), "{error}");
+}
+
+#[test]
 fn planted_faults_are_seen() {
     for (target, told) in
         [("panics", "planted"), ("grows", "memory"), ("leaves", "left behind"), ("hangs", "more than 2 s")]

@@ -48,8 +48,11 @@ impl FromStr for Fallback {
 /// Adds `count` shells for every coat primitive, inner to outer, in one mesh per base mesh.
 ///
 /// All shells of a primitive share their vertex accessors and differ in their range of indices: viewers sort
-/// transparent meshes by the middle of their bounds, and so keep them in this order.
-pub fn add(document: &mut Document, asset: &Asset, coat: &Coat, count: u32) -> Result<()> {
+/// transparent meshes by the middle of their bounds, and so keep them in this order. Gives the shells' materials, by tile.
+///
+/// # Errors
+/// When the coat does not fit the asset.
+pub fn add(document: &mut Document, asset: &Asset, coat: &Coat, count: u32) -> Result<Vec<Vec<usize>>> {
     let mut added = Added { materials: document.count("materials"), ..Added::default() };
     let materials = materials(document, asset, coat, count)?;
     let nearest: Vec<CoatPrimitive> = coat.primitives.iter().flat_map(|p| nearest(p, coat)).collect();
@@ -86,7 +89,7 @@ pub fn add(document: &mut Document, asset: &Asset, coat: &Coat, count: u32) -> R
         }
     }
     vrm::follow(document, &added);
-    Ok(())
+    Ok(materials.iter().map(|shells| shells.iter().map(|(_, material)| *material).collect()).collect())
 }
 
 /// A coat primitive without passages: every triangle of one carries the tile that it has most of.

@@ -4,6 +4,7 @@ use super::NAME;
 use crate::asset::document::Document;
 use crate::asset::glb::{self, is_glb};
 use crate::asset::json::At;
+use crate::asset::mend;
 use crate::asset::origin::Origin;
 use crate::error::{Error, Kind, Result};
 use crate::math::hash;
@@ -102,9 +103,8 @@ pub fn give_back(document: &Document) -> Result<Input> {
 /// When its JSON cannot be read.
 pub fn files_beside(bytes: &[u8], out: &Path) -> Result<Option<String>> {
     let text = if is_glb(bytes) { glb::parse(bytes, &mut Vec::new())?.0 } else { bytes };
-    let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
-    let json: Value = serde_json::from_slice(text)
-        .map_err(|error| Error::input("the JSON of the input that is stored cannot be read").with_found(error))?;
+    // As it was read when it was baked: what was odd about it was said then.
+    let json = mend::read(text, &mut Vec::new())?;
     let root = At::root(&json);
     let owners = [root.list("buffers")?, root.list("images")?].concat();
     let named = owners.iter().filter_map(|owner| owner.value["uri"].as_str()).filter(|uri| !uri.starts_with("data:"));

@@ -1,5 +1,6 @@
 //! The extension `FURRIER_mesh_fur` (`docs/extension/`): a coat into a document, and back.
 
+mod expressions;
 mod fallback;
 mod flatten;
 mod input;

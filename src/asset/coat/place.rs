@@ -28,7 +28,8 @@ pub fn place(document: &mut Document, scene: &SceneGraph, node: usize, shells: u
         }
     }
     let added_index = document.push("nodes", added);
-    let leveled = has(&base, "MSFT_lod");
+    // What MSFT_lod alone shows is in no scene beside it.
+    let leveled = has(&base, "MSFT_lod") || scene.levels.linked[node];
     let hidden_from_above = ancestors(scene, node).any(|above| {
         let above = &document.json["nodes"][above];
         has(above, "KHR_node_visibility") || has(above, "MSFT_lod")

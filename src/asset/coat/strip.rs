@@ -1,6 +1,7 @@
 //! A coat taken off again.
 
 use super::NAME;
+use super::expressions;
 use super::input::{Input, give_back};
 use super::references::{known, visit};
 use super::worn::{Worn, is_shells};
@@ -163,6 +164,7 @@ impl Bare {
             }
         }
         drop_references(json, "", "", &gone, &shown);
+        expressions::forget(json);
         self.coats.extend(gone.iter().map(|&node| ("nodes", node as usize)));
     }
 

@@ -1,5 +1,6 @@
 //! A coat into a document, and the document into files.
 
+use super::expressions;
 use super::fallback::{self, Fallback};
 use super::input::{self, Input};
 use super::parts::{check, part_of, set_extension};
@@ -54,8 +55,8 @@ pub fn write_packed(
     out: &Path,
 ) -> Result<Vec<String>> {
     let text = check_output(out, &asset.document.files)?;
-    let mut document = with_packed(asset, coat, textures, fallback)?;
-    let mut notes = bring_images(&mut document, out, text)?;
+    let (mut document, mut notes) = with_packed(asset, coat, textures, fallback)?;
+    notes.extend(bring_images(&mut document, out, text)?);
     notes.extend(input::store(&mut document)?);
     write_document(document, out, text)?;
     Ok(notes)
@@ -170,15 +171,15 @@ fn take_images_along(document: &mut Document) -> Result<Vec<String>> {
 /// When the asset has a coat already, or the coat does not fit it.
 pub fn with_coat(asset: &Asset, coat: &Coat, fallback: Fallback) -> Result<Document> {
     refuse_second(asset)?;
-    with_packed(asset, coat, &packed(coat)?, fallback)
+    with_packed(asset, coat, &packed(coat)?, fallback).map(|(document, _)| document)
 }
 
 fn packed(coat: &Coat) -> Result<Vec<Packed>> {
     coat.tiles.iter().map(Packed::new).collect()
 }
 
-/// `textures` are those of the coat's tiles.
-fn with_packed(asset: &Asset, coat: &Coat, textures: &[Packed], fallback: Fallback) -> Result<Document> {
+/// The document with the coat, and what the user should know of it. `textures` are those of the coat's tiles.
+fn with_packed(asset: &Asset, coat: &Coat, textures: &[Packed], fallback: Fallback) -> Result<(Document, Vec<String>)> {
     refuse_second(asset)?;
     let mut document = asset.document.clone();
     let tiles: Vec<Value> =
@@ -233,10 +234,12 @@ fn with_packed(asset: &Asset, coat: &Coat, textures: &[Packed], fallback: Fallba
             object.insert(NAME.into(), extras);
         }
     }
-    if let Fallback::Shells(count) = fallback {
-        fallback::add(&mut document, asset, coat, count)?;
-    }
-    Ok(document)
+    let shells = match fallback {
+        Fallback::None => Vec::new(),
+        Fallback::Shells(count) => fallback::add(&mut document, asset, coat, count)?,
+    };
+    let notes = expressions::follow(&mut document, asset, coat, &shells);
+    Ok((document, notes))
 }
 
 /// Accessors of coat vertices, by attribute.

@@ -115,7 +115,14 @@ fn file(text: &str, parent: &Path, document: &mut Document, found: &mut Material
         let told = || name.as_deref().unwrap_or_default();
         match keyword.as_str() {
             "kd" => match colour(rest) {
-                Some(colour) => material.colour = Some(colour),
+                Some(colour) => {
+                    let beyond = colour.iter().any(|&c| c > 1.0);
+                    if beyond {
+                        warnings.push(format!("material {:?}: Kd {rest} goes beyond 1; taken as parts of 255", told()));
+                    }
+                    let whole = if beyond { 255.0 } else { 1.0 };
+                    material.colour = Some(colour.map(|c| (c / whole).clamp(0.0, 1.0)));
+                }
                 None => material.passed_over.push(format!("Kd {rest}")),
             },
             "d" => material.opacity = rest.split_whitespace().next_back().and_then(|d| d.parse().ok()),
@@ -143,7 +150,7 @@ fn file(text: &str, parent: &Path, document: &mut Document, found: &mut Material
     }
 }
 
-/// One or three numbers from 0 to 1.
+/// One or three numbers.
 fn colour(rest: &str) -> Option<[f32; 3]> {
     let values: Vec<f32> = rest.split_whitespace().map(|word| word.parse().ok()).collect::<Option<_>>()?;
     let colour = match values[..] {
@@ -151,7 +158,7 @@ fn colour(rest: &str) -> Option<[f32; 3]> {
         [r, g, b, ..] => [r, g, b],
         _ => return None,
     };
-    colour.iter().all(|c| c.is_finite()).then(|| colour.map(|c| c.clamp(0.0, 1.0)))
+    colour.iter().all(|c| c.is_finite()).then_some(colour)
 }
 
 /// An image and how it is laid on.

@@ -3,6 +3,7 @@
 use super::entries::Wanted;
 use super::pattern::Pattern;
 use super::scan;
+use crate::asset::axes::Axis;
 use crate::asset::coat::Fallback;
 use crate::bake::recipe::{Choices, Layout, Recipe, split_choice};
 use crate::bake::units::Units;
@@ -43,6 +44,12 @@ pub struct Rule {
     pub seed: Option<u64>,
     /// What viewers without the extension see: `none` or `shells:N`.
     pub fallback: Option<String>,
+    /// Which axis of the files is up.
+    pub up: Option<Axis>,
+    /// Which of them their fronts look along.
+    pub forward: Option<Axis>,
+    /// Whether coarser levels of detail are furred too.
+    pub lods: Option<bool>,
     /// Where outputs go, with {path}, {dir}, {name}, {ext} of the input.
     pub output: Option<String>,
 }
@@ -178,6 +185,9 @@ impl Manifest {
             texture_size: rule.texture_size,
             seed: rule.seed.unwrap_or(default.seed),
             fallback: fallback.transpose()?.unwrap_or(default.fallback),
+            up: rule.up,
+            forward: rule.forward,
+            lods: rule.lods.unwrap_or(default.lods),
         })
     }
 }
@@ -208,6 +218,9 @@ fn over(under: Rule, rule: Rule) -> Rule {
         texture_size: rule.texture_size.or(under.texture_size),
         seed: rule.seed.or(under.seed),
         fallback: rule.fallback.or(under.fallback),
+        up: rule.up.or(under.up),
+        forward: rule.forward.or(under.forward),
+        lods: rule.lods.or(under.lods),
         output: rule.output.or(under.output),
     }
 }

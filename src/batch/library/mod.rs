@@ -42,7 +42,7 @@ pub fn open(paths: &[PathBuf], choices: &Choices, output: Option<&Path>, chosen:
                 return Err(Error::usage("a library's own file says how it is baked and where to")
                     .with_file(&manifest)
                     .with_expected(
-                        "no choice of preset, settings, materials, layout, seed, fallback or output beside it",
+                        "no choice of preset, settings, materials, layout, seed, fallback, axes, levels or output beside it",
                     )
                     .with_hint(format!("change {MANIFEST}, or name a folder or files without one")));
             }

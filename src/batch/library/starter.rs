@@ -21,6 +21,8 @@ output = "furry/{path}.glb"       # {path}: below this folder, without ending; {
 # texture_size = 128
 # seed = 0
 # fallback = "shells:8"           # what programs without the extension show: none, shells:N
+# up = "z"                        # which axis of the files is up; glTF's is y. forward = "-y" says where their fronts look
+# lods = true                     # fur coarser levels of detail too, each by itself
 
 # Which files, and what is different for them. Later rules go over earlier ones. A file that no rule names is not baked.
 [[rules]]

@@ -57,7 +57,7 @@ pub fn flip(plan: &Plan, outcome: &Outcome) -> Result<f64> {
     }
     let fur = PictureRequest {
         input: plan.input(entry).to_string_lossy().into_owned(),
-        reading: Reading::default(),
+        reading: Reading { lods: false, ..recipe.reading() },
         preset: recipe.preset.clone(),
         materials: recipe.materials.clone(),
         units: recipe.units,

@@ -63,7 +63,7 @@ impl Coat {
         let progress = console.progress();
         progress.step("bake");
         let (coat_key, file) = self.subject.baked(&mut keep, console)?;
-        let sight = Sight { coat: coat_key, fur: self.subject.picture(preset), device, size, lights, distances };
+        let sight = Sight { coat: coat_key, fur: self.subject.picture(preset)?, device, size, lights, distances };
         let seen = measure(&file, sight, &mut keep, &mut |what| progress.step(what))?;
         let Seen { report, fur, adapter } = seen;
         progress.finish();

@@ -2,7 +2,7 @@
 
 use super::checked_outputs;
 use super::subject::Subject;
-use crate::asset::coat::read_coat;
+use crate::asset::coat::read_coat_as;
 use crate::asset::write;
 use crate::cli::console::Console;
 use crate::cli::output;
@@ -68,9 +68,9 @@ impl Levels {
         let progress = console.progress();
         progress.step("bake");
         let (_, file) = subject.baked(&mut keep, console)?;
-        let (asset, coat) = read_coat(&file)?;
+        let (asset, coat) = read_coat_as(&file, &subject.reading()?)?;
         progress.step("grow");
-        let fur = Fur::new(subject.picture(preset.clone()), device.clone(), size)?;
+        let fur = Fur::new(subject.picture(preset.clone())?, device.clone(), size)?;
         fur.notes().iter().for_each(|note| console.note(note));
         // Levels of several tiles go together: what they hold adds up.
         let tiles = summarise(&coat).tiles;
@@ -90,7 +90,7 @@ impl Levels {
             if self.dolly > 1 {
                 let small = size.map(|n| (n / DOLLY_PART).max(1));
                 let mut draw = |camera: &Camera, lit, level| shown(sitting, (camera, lit, small), level);
-                let fur = Fur::new(subject.picture(preset), device, small)?;
+                let fur = Fur::new(subject.picture(preset)?, device, small)?;
                 dolly = Some(levels::dolly(&fur, (self.dolly, small), &mut keep, &mut draw, tell)?);
             }
             Ok((rows, dolly, sheet, adapter))

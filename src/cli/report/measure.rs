@@ -1,6 +1,6 @@
 //! A coat beside its fur: the file is drawn as a game would, the fur hair by hair.
 
-use crate::asset::coat::read_coat;
+use crate::asset::coat::read_coat_as;
 use crate::bake::picture::PictureRequest;
 use crate::coat::summary::summarise;
 use crate::error::Result;
@@ -48,7 +48,7 @@ pub struct Seen {
 /// Where the file or the fur cannot be used, there is no adapter, or a picture cannot be kept.
 pub fn measure(file: &Path, sight: Sight, keep: &mut Keep, tell: &mut dyn FnMut(&str)) -> Result<Seen> {
     let Sight { coat: coat_key, fur, device, size, lights, distances } = sight;
-    let (asset, coat) = read_coat(file)?;
+    let (asset, coat) = read_coat_as(file, &fur.reading)?;
     tell("grow");
     let fur = Fur::new(fur, device.clone(), size)?;
     let choice = match &device {

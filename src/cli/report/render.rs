@@ -1,8 +1,9 @@
 //! `furrier report render`.
 
 use super::checked_outputs;
-use crate::asset::{Reading, write};
+use crate::asset::write;
 use crate::bake::picture::{Grown, Only, PictureRequest};
+use crate::cli::axes::AxesArgs;
 use crate::cli::console::Console;
 use crate::cli::output;
 use crate::cli::recipe::UnitName;
@@ -39,6 +40,8 @@ pub struct Render {
     #[arg(long, value_enum, default_value = "auto")]
     units: UnitName,
     #[command(flatten)]
+    axes: AxesArgs,
+    #[command(flatten)]
     stage: StageArgs,
     /// Runs of each setting; the quickest counts
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=100))]
@@ -64,7 +67,7 @@ impl Render {
         let reference = self.reference.as_ref().map(load_named).transpose()?;
         let grown = Grown::new(&PictureRequest {
             input: self.input.clone(),
-            reading: Reading::default(),
+            reading: self.axes.reading()?,
             preset: Preset::load(&self.preset)?.with_settings(&self.settings)?,
             materials: Vec::new(),
             units: self.units.units(),

@@ -5,6 +5,7 @@ use crate::asset::coat::Fallback;
 use crate::bake::bake;
 use crate::bake::picture::{Only, PictureRequest};
 use crate::bake::recipe::Choices;
+use crate::cli::axes::AxesArgs;
 use crate::cli::console::Console;
 use crate::cli::recipe::{LayoutName, UnitName};
 use crate::cli::stage::size;
@@ -46,6 +47,8 @@ pub struct Subject {
     /// Texels along a tile's edge, or along the atlas's: overrides the preset's shells.texture_size
     #[arg(long, value_name = "N")]
     texture_size: Option<u32>,
+    #[command(flatten)]
+    axes: AxesArgs,
     /// Where random numbers start
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
@@ -110,11 +113,13 @@ impl Subject {
             texture_size: self.texture_size,
             seed: self.seed,
             fallback: Fallback::None,
+            up: self.axes.up,
+            forward: self.axes.forward,
             ..Choices::default()
         };
         let recipe = recipe.recipe()?;
         let key = Key::default().program()?.asset(&self.input)?.preset(&recipe.preset)?;
-        let key = key.with((&recipe.materials, recipe.units, recipe.method, recipe.seed));
+        let key = key.with((&recipe.materials, recipe.units, recipe.method, recipe.seed, recipe.upright));
         let out = keep.coat_file(key);
         if !out.is_file() {
             let baked = bake(&recipe.request(&self.input, &out, false), &mut |_| {})?;
@@ -123,17 +128,28 @@ impl Subject {
         Ok((key, out))
     }
 
+    /// Which way up the asset is.
+    ///
+    /// # Errors
+    /// As [`AxesArgs::reading`].
+    pub fn reading(&self) -> Result<Reading> {
+        self.axes.reading()
+    }
+
     /// The fur that the coat stands for.
-    pub fn picture(&self, preset: Preset) -> PictureRequest {
-        PictureRequest {
+    ///
+    /// # Errors
+    /// As [`AxesArgs::reading`].
+    pub fn picture(&self, preset: Preset) -> Result<PictureRequest> {
+        Ok(PictureRequest {
             input: self.input.clone(),
-            reading: Reading::default(),
+            reading: self.reading()?,
             preset,
             materials: self.materials.clone(),
             units: self.units.units(),
             seed: self.seed,
             only: Only::Hybrid,
             pose: None,
-        }
+        })
     }
 }
