@@ -24,5 +24,7 @@ pub mod shade;
 pub mod stage;
 pub mod viewer;
 pub mod volume;
+#[cfg(feature = "window")]
+pub mod window;
 
 pub use error::{Error, Result};

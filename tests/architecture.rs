@@ -27,8 +27,9 @@ const FLOORS: &[(&str, u32)] = &[
     ("batch", 9),
     ("report", 9),
     ("viewer", 9),
-    ("cli", 10),
-    ("main", 11),
+    ("window", 10),
+    ("cli", 11),
+    ("main", 12),
 ];
 
 /// `error` serves every floor, the ground floor included.

@@ -41,6 +41,7 @@ mod likeness;
 mod made;
 mod meshes;
 mod metrics;
+mod motion;
 mod older_files;
 mod one_skin;
 mod oracle;
@@ -83,5 +84,7 @@ mod validator;
 mod viewer;
 mod walk;
 mod wild_skins;
+#[cfg(feature = "window")]
+mod window;
 mod witness;
 mod xatlas;

@@ -15,16 +15,17 @@ use x11rb::xcb_ffi::XCBConnection;
 const SIZE: [u16; 2] = [40, 24];
 
 /// An X server without a screen; ends with its owner.
-struct Server {
+pub struct Server {
     process: Child,
-    name: CString,
+    /// Of the display, as DISPLAY holds it.
+    pub name: CString,
 }
 
 impl Server {
     /// None, with the reason printed, where there is none to start.
-    fn start() -> Option<Self> {
+    pub fn start(screen: &str) -> Option<Self> {
         let mut command = Command::new("Xvfb");
-        command.args(["-displayfd", "1", "-screen", "0", "64x64x24", "-nolisten", "tcp"]);
+        command.args(["-displayfd", "1", "-screen", "0", screen, "-nolisten", "tcp"]);
         let mut process = match command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn() {
             Ok(process) => process,
             Err(error) => {
@@ -84,7 +85,7 @@ impl rwh::HasWindowHandle for OnScreen {
 
 #[test]
 fn a_device_opened_for_a_window_draws_into_it() {
-    let Some(server) = Server::start() else { return };
+    let Some(server) = Server::start("64x64x24") else { return };
     let window = OnScreen::new(&server);
     let id = window.window.window();
     let make = |instance: &wgpu::Instance| {
@@ -129,7 +130,7 @@ fn a_device_opened_for_a_window_draws_into_it() {
 fn what_keeps_a_window_from_opening_is_said() {
     let refused = |_: &wgpu::Instance| Err(Error::usage("there is no window"));
     assert_eq!(Gpu::open_for_surface(&Choice::Auto, refused).err().unwrap().what, "there is no window");
-    let Some(server) = Server::start() else { return };
+    let Some(server) = Server::start("64x64x24") else { return };
     let window = OnScreen::new(&server);
     let make = |instance: &wgpu::Instance| Ok(instance.create_surface(window).unwrap());
     let error = Gpu::open_for_surface(&"gpu:no such adapter".parse().unwrap(), make).err().unwrap();

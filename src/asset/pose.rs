@@ -74,6 +74,19 @@ impl Asset {
         list.iter().enumerate().map(name).collect()
     }
 
+    /// Time of the last key of animation `index`, s; 0 where it has none.
+    ///
+    /// # Errors
+    /// Names the sampler whose keys cannot be read.
+    pub fn animation_seconds(&self, index: usize) -> Result<f64> {
+        let mut last: f64 = 0.0;
+        for sampler in self.document.root().entry("animations", index)?.list("samplers")? {
+            let times = self.document.floats(sampler.need("input")?.size()?, 1)?;
+            last = times.iter().map(|&t| f64::from(t)).filter(|t| t.is_finite()).fold(last, f64::max);
+        }
+        Ok(last)
+    }
+
     /// The pose at `seconds` into animation `index`; before its first and after its last key it stands still.
     ///
     /// # Errors

@@ -9,6 +9,7 @@ mod finest;
 pub mod picture;
 pub mod recipe;
 mod regions;
+pub mod seen;
 mod sets;
 mod skin;
 mod steps;
@@ -135,13 +136,43 @@ pub struct Laid {
 pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Baked> {
     let mut steps = Steps::new(tell, request.cache.clone());
     check_output(&request.out, &[])?;
+    let (asset, mut baked) = dress(request, &mut steps, &|asset| {
+        refuse_own_input(&request.input, &request.out)?;
+        check_output(&request.out, &asset.document.files).map(drop)
+    })?;
+    let pack = |tile: &Tile| steps.kept("textures", tile, |steps| steps.run("textures", || Packed::new(tile)));
+    let textures = baked.coat.tiles.iter().map(pack).collect::<Result<Vec<_>>>()?;
+    let write = || write_packed(&asset, &baked.coat, &textures, request.fallback, &request.out);
+    baked.notes.extend(steps.run("write", write)?);
+    baked.notes.extend(draw_calls_note(&baked.coat));
+    Ok(done(baked, steps))
+}
+
+/// Bakes, and writes nothing: the asset as it was read, with the pictures that the coat shows, and the coat.
+///
+/// # Errors
+/// When the input cannot be used or names something that is not there.
+pub fn coat(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<(Asset, Baked)> {
+    let mut steps = Steps::new(tell, request.cache.clone());
+    let (asset, baked) = dress(request, &mut steps, &|_| Ok(()))?;
+    Ok((asset, done(baked, steps)))
+}
+
+/// With what the steps tell at their end.
+fn done(mut baked: Baked, steps: Steps<'_>) -> Baked {
+    let (times, cached, warnings) = steps.done();
+    baked.warnings.extend(warnings);
+    Baked { steps: times, cached, ..baked }
+}
+
+/// Reads the input and grows its coat; `check` sees the asset before the long work.
+fn dress(request: &Request, steps: &mut Steps<'_>, check: &dyn Fn(&Asset) -> Result<()>) -> Result<(Asset, Baked)> {
     for preset in std::iter::once(&request.preset).chain(request.presets.iter().map(|(_, preset)| preset)) {
         regions::check_files(preset)?;
     }
     let mut asset = steps.run("read", || asset::load_as(&request.input, &request.reading))?;
     refuse_second(&asset)?;
-    refuse_own_input(&request.input, &request.out)?;
-    check_output(&request.out, &asset.document.files)?;
+    check(&asset)?;
     let selection = asset::select(&asset.parts, &request.materials)?;
     let chosen = selection.parts;
     for (material, _) in &request.presets {
@@ -195,9 +226,9 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
         let textures = Textures::new(&mut asset.document, preset, has_uv && preset.regions.is_empty())?;
         let task = Task { asset: &asset, skin: &skin, preset, parts, request, scale: &scale, textures: &textures };
         let coated = match request.method {
-            Method::Atlas { texels } => atlas::coat_parts(&task, texels, &mut steps)?,
-            Method::Lapped => coat_parts(&task, |seed| Parameterisation::Lapped { seed }, &mut steps)?,
-            Method::Uv(set) => coat_parts(&task, |_| Parameterisation::Uv { set }, &mut steps)?,
+            Method::Atlas { texels } => atlas::coat_parts(&task, texels, steps)?,
+            Method::Lapped => coat_parts(&task, |seed| Parameterisation::Lapped { seed }, steps)?,
+            Method::Uv(set) => coat_parts(&task, |_| Parameterisation::Uv { set }, steps)?,
         };
         let first = coat.tiles.len();
         let numbered = |primitive: CoatPrimitive| CoatPrimitive {
@@ -220,13 +251,7 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
     }
     carried.sort_by_key(|(index, _)| *index);
     coat.primitives.extend(carried.into_iter().map(|(_, primitive)| primitive));
-    let pack = |tile: &Tile| steps.kept("textures", tile, |steps| steps.run("textures", || Packed::new(tile)));
-    let textures = coat.tiles.iter().map(pack).collect::<Result<Vec<_>>>()?;
-    notes.extend(steps.run("write", || write_packed(&asset, &coat, &textures, request.fallback, &request.out))?);
-    notes.extend(draw_calls_note(&coat));
-    let (times, cached, cache_warnings) = steps.done();
-    warnings.extend(cache_warnings);
-    Ok(Baked { coat, notes, warnings, steps: times, cached, ..baked })
+    Ok((asset, Baked { coat, notes, warnings, ..baked }))
 }
 
 /// Parts that one tile is made for.

@@ -42,7 +42,7 @@ pub enum Only {
 }
 
 /// What to depict.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PictureRequest {
     /// A file, or `sample:NAME`.
     pub input: String,

@@ -1,4 +1,4 @@
-//! Floor 10: the command line. One file per subcommand: parse, call the library, print.
+//! Floor 11: the command line. One file per subcommand: parse, call the library, print.
 
 mod axes;
 mod bake;

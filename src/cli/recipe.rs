@@ -59,6 +59,11 @@ impl RecipeArgs {
         names.filter(|name| Preset::source(name).is_none()).map(PathBuf::from).collect()
     }
 
+    /// Whether anything about hair was chosen.
+    pub fn chosen(&self) -> bool {
+        !self.presets.is_empty() || !self.settings.is_empty()
+    }
+
     /// What was chosen.
     pub fn choices(&self) -> Choices {
         Choices {

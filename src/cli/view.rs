@@ -1,11 +1,15 @@
 //! `furrier view`.
 
 use super::axes::AxesArgs;
+use super::cache_flags::CacheFlags;
 use super::console::Console;
 use super::output;
+use super::recipe::RecipeArgs;
 use super::stage::StageArgs;
-use crate::asset;
-use crate::error::Result;
+use crate::asset::{self, Asset};
+use crate::bake::seen::seen;
+use crate::data::coat::Coat;
+use crate::error::{Error, Result};
 use crate::gpu::Choice;
 use crate::runtime::Blending;
 use crate::stage::file::Format;
@@ -14,10 +18,12 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// Draw a furry asset as a game would, into a picture
+/// Show a furry asset as a game would, in a window or into a picture
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:
+  furrier view furry.glb
+  furrier view cat.glb --preset short-cat
   furrier view furry.glb --screenshot furry.png
   furrier view furry.glb --screenshot walk.png --animation Walk --time 0.4 --orbit 70,10,0.8
   furrier view furry.glb --screenshot around.png --turntable 8 --size 256x256
@@ -25,14 +31,19 @@ Examples:
   furrier view mat.glb --screenshot box.png --occluder box.obj --light dir:-1,-2,0:3,3,3
   furrier view furry.glb --screenshot fins.png --show skin,fins --light dir:0,-1,-1:3,3,3 --ambient 0.2,0.2,0.2
 
+Without --screenshot a window opens; ? lists its keys, docs/window.md tells the rest. A script drives it: one action a line.
+
 A camera file is JSON: {\"eye\": [x, y, z], \"target\": [x, y, z], \"up\": [x, y, z], \"vfov_deg\": 40}, in metres; the last
 two may be left out. An .exr is linear and premultiplied, with the distance to the nearest skin or near shell (Z). Any graphics adapter will do, software ones too.")]
 pub struct View {
-    /// A file that furrier baked
-    file: PathBuf,
-    /// The picture to write: .png or .exr
+    /// A file that furrier baked; or, with --preset or --set, a mesh to bake first; or sample:NAME
+    file: String,
+    /// Write a picture, .png or .exr, instead of opening a window
     #[arg(long, value_name = "OUT.png|exr")]
-    screenshot: PathBuf,
+    screenshot: Option<PathBuf>,
+    /// Drive the window by this file, one action a line (docs/window.md)
+    #[arg(long, value_name = "FILE", conflicts_with = "screenshot")]
+    script: Option<PathBuf>,
     /// What to draw: parts of the coat; or how it lies: the hair's direction and length, the patches of its texture, or
     /// their stretch; or where skin is bald that should not be; or how many texels each pixel reads
     #[arg(long, value_name = "skin,shells,fins|field|patches|stretch|bald|cost", default_value = "skin,shells,fins")]
@@ -62,14 +73,18 @@ pub struct View {
     #[arg(long, value_name = "S", requires = "animation", allow_hyphen_values = true)]
     time: Option<f64>,
     /// Draw a contact sheet of N views around the asset, 1 to 64; --size is that of one
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", requires = "screenshot")]
     turntable: Option<u32>,
     /// The adapter to draw with
     #[arg(long, value_name = "auto|gpu[:NAME]", default_value = "auto")]
     device: String,
     /// Write times, sizes and counts to this JSON file
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, value_name = "FILE.json", requires = "screenshot")]
     report: Option<PathBuf>,
+    #[command(flatten, next_help_heading = "Baking")]
+    recipe: RecipeArgs,
+    #[command(flatten, next_help_heading = "Baking")]
+    cache: CacheFlags,
 }
 
 /// As [`Blending`].
@@ -92,27 +107,34 @@ impl From<BlendBy> for Blending {
 }
 
 impl View {
-    /// Draws, and says what it drew with.
+    /// Opens the window, or draws and says what it drew with.
     ///
     /// # Errors
-    /// As [`viewer::screenshot`], and where an option cannot be read or a file not written.
+    /// As [`viewer::screenshot`], and where an option cannot be read, a file not written or a window not opened.
     pub fn run(self, console: &Console) -> Result<()> {
-        let format = Format::of(&self.screenshot, "--screenshot")?;
+        match self.screenshot.clone() {
+            Some(screenshot) => self.shoot(&screenshot, console),
+            None => self.open(),
+        }
+    }
+
+    fn shoot(self, screenshot: &Path, console: &Console) -> Result<()> {
+        let format = Format::of(screenshot, "--screenshot")?;
         let options =
             ViewOptions { depths: matches!(format, Format::Exr), count: self.report.is_some(), ..self.options()? };
         options.occluder.iter().flat_map(|thing| &thing.warnings).for_each(|line| console.warning(line));
         let occluder = self.occluder.as_ref().map(Path::new);
-        let read: Vec<&Path> = [Some(self.file.as_path()), occluder].into_iter().flatten().collect();
-        output::check(&self.screenshot, &read)?;
+        let read: Vec<&Path> = [Some(Path::new(&self.file)), occluder].into_iter().flatten().collect();
+        output::check(screenshot, &read)?;
         if let Some(report) = &self.report {
-            output::check(report, &[&read[..], &[&self.screenshot]].concat())?;
+            output::check(report, &[&read[..], &[screenshot]].concat())?;
         }
-        let (asset, coat) = asset::coat::read_coat_as(&self.file, &self.axes.reading()?)?;
+        let (asset, coat) = self.subject(console)?;
         let shot = match self.turntable {
             Some(views) => viewer::turntable(&asset, &coat, &options, views)?,
             None => viewer::screenshot(&asset, &coat, &options)?,
         };
-        output::bytes(&self.screenshot, &shot.encode(format)?)?;
+        output::bytes(screenshot, &shot.encode(format)?)?;
         if let Some(report) = &self.report {
             output::json(report, &shot.report)?;
         }
@@ -120,15 +142,62 @@ impl View {
         let (width, height) = (shot.image.width, shot.image.height);
         shot.legend.iter().chain(&shot.notes).for_each(|line| console.note(line));
         let outcome = json!({
-            "screenshot": self.screenshot,
+            "screenshot": screenshot,
             "size": [width, height],
             "legend": shot.legend,
             "notes": shot.notes,
             "report": shot.report,
         });
-        console.result(&outcome, |out| {
-            writeln!(out, "{}: {width} × {height}, drawn by {device}", self.screenshot.display())
-        })
+        console.result(&outcome, |out| writeln!(out, "{}: {width} × {height}, drawn by {device}", screenshot.display()))
+    }
+
+    /// Whether the input is baked first.
+    fn bakes(&self) -> bool {
+        self.recipe.chosen() || self.file.starts_with("sample:")
+    }
+
+    /// What is looked at: read, or baked first.
+    fn subject(&self, console: &Console) -> Result<(Asset, Coat)> {
+        let reading = self.axes.reading()?;
+        if !self.bakes() {
+            return asset::coat::read_coat_as(Path::new(&self.file), &reading);
+        }
+        let recipe = self.recipe.choices().recipe()?;
+        let progress = console.progress();
+        let seen = seen(&recipe, &self.file, &reading, self.cache.store(), &mut |step| progress.step(step));
+        progress.finish();
+        let (asset, coat, baked) = seen?;
+        baked.notes.iter().for_each(|note| console.note(note));
+        baked.warnings.iter().for_each(|warning| console.warning(warning));
+        Ok((asset, coat))
+    }
+
+    /// Opens the window.
+    #[cfg(feature = "window")]
+    fn open(self) -> Result<()> {
+        use crate::window::{self, Begin, loading, script::Script};
+        if self.occluder.is_some() {
+            return Err(Error::usage("the window shows the asset alone")
+                .with_parameter("occluder")
+                .with_hint("`--screenshot OUT.png` shows things beside it"));
+        }
+        let ViewOptions { device, stage, show, moment, shadow_map, level, .. } = self.options()?;
+        let subject = loading::Subject {
+            input: self.file.clone(),
+            reading: self.axes.reading()?,
+            choices: self.bakes().then(|| self.recipe.choices()),
+            cache: self.cache.store(),
+        };
+        let script = self.script.as_deref().map(Script::read).transpose()?.unwrap_or_default();
+        window::open(Begin { subject, stage, shown: show, level, moment, shadow: shadow_map, device, script })
+    }
+
+    /// Says that there is no window.
+    #[cfg(not(feature = "window"))]
+    fn open(self) -> Result<()> {
+        Err(Error::usage("this furrier was built without its window").with_parameter("screenshot").with_hint(
+            "`--screenshot OUT.png` writes a picture; the cargo feature `window`, on by default, brings the window",
+        ))
     }
 
     fn options(&self) -> Result<ViewOptions> {

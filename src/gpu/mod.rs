@@ -15,6 +15,7 @@ pub use adapter::{Adapter, AdapterKind, Choice, adapters, missing_adapter_hint};
 pub use compute::{Binding, Kernel};
 pub use memory::{Coding, ReadBack, TextureArray};
 pub use shader::{Constant, Library, Source, Text, compose};
+pub use surface::Screen;
 pub use timer::Timer;
 
 use crate::error::{Error, Kind, Result};

@@ -72,7 +72,7 @@ impl Sitting<'_> {
 }
 
 /// What the runtime needs to know of a camera and lights, before which `points_m` lie around `origin_m`.
-pub(super) fn frame(camera: &Camera, origin_m: DVec3, points_m: &[Vec3], size: [u32; 2], lit: Lit) -> Frame {
+pub fn frame(camera: &Camera, origin_m: DVec3, points_m: &[Vec3], size: [u32; 2], lit: Lit) -> Frame {
     let [near_m, far_m] = depth_range_m(camera, points_m, origin_m);
     let aspect = f64::from(size[0].max(1)) / f64::from(size[1].max(1));
     Frame {

@@ -1,0 +1,27 @@
+//! A coat to look at, whether or not the input wears one already.
+
+use super::recipe::Recipe;
+use super::{Baked, coat};
+use crate::asset::{Asset, Reading};
+use crate::cache::Store;
+use crate::data::coat::Coat;
+use crate::error::Result;
+use std::path::Path;
+
+/// An asset and the coat that `recipe` gives it. One that it wears already is taken off first. `tell` hears the name of each step.
+///
+/// # Errors
+/// As [`coat`].
+pub fn seen(
+    recipe: &Recipe,
+    input: &str,
+    reading: &Reading,
+    cache: Option<Store>,
+    tell: &mut dyn FnMut(&'static str),
+) -> Result<(Asset, Coat, Baked)> {
+    // Nothing is written, so there is nowhere to write to.
+    let mut request = recipe.request(input, Path::new(""), false);
+    (request.reading, request.cache) = (Reading { rebake: true, ..*reading }, cache);
+    let (asset, mut baked) = coat(&request, tell)?;
+    Ok((asset, std::mem::take(&mut baked.coat), baked))
+}

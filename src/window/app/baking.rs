@@ -1,0 +1,230 @@
+//! Changes of the preset, and the coats that come of them: a coarse one at once, the final one when the hand rests.
+
+use super::{App, Voice, Word};
+use crate::asset::coat::Fallback;
+use crate::bake::recipe::{Layout, Recipe};
+use crate::bake::units::Units;
+use crate::error::Result;
+use crate::window::loading::{self, Ready, Sketch, Task};
+use crate::window::mailbox::Sender;
+use crate::window::parameters::{self, Wanted};
+use egui::Ui;
+use std::time::{Duration, Instant};
+
+/// How long the hand must rest before the final coat is baked.
+const RESTS: Duration = Duration::from_millis(350);
+/// Texels along an edge of a coarse coat's tile, and its layers, at most.
+const COARSE: [u32; 2] = [32, 6];
+
+/// Which coat is wanted, and which is there.
+pub(super) struct Baking {
+    sketches: Sender<Sketch>,
+    /// Counts changes.
+    change: u64,
+    /// When the last change was; none where the final coat of it is baked or ordered.
+    touched: Option<Instant>,
+    /// The recipe whose final coat is ordered and not there yet.
+    ordered: Option<Box<Recipe>>,
+    /// From the last change to its coarse coat and to its final one, ms.
+    pub(super) took_ms: [Option<f64>; 2],
+    /// When the last change was.
+    began: Option<Instant>,
+}
+
+impl Baking {
+    pub(super) fn new(voice: Voice) -> Result<Self> {
+        let told = move |change, ready: Result<Ready>| voice.say(Word::Sketched(change, Box::new(ready)));
+        let sketches = loading::start_sketches(told)?;
+        Ok(Self { sketches, change: 0, touched: None, ordered: None, took_ms: [None; 2], began: None })
+    }
+
+    /// Counts changes of the preset.
+    pub(super) fn change(&self) -> u64 {
+        self.change
+    }
+
+    /// Whether the final coat is still to come.
+    pub(super) fn due(&self) -> bool {
+        self.touched.is_some() || self.ordered.is_some()
+    }
+
+    /// Nothing is ordered: what is shown was read anew.
+    pub(super) fn forget(&mut self) {
+        (self.touched, self.ordered, self.change) = (None, None, self.change + 1);
+    }
+
+    /// Takes note of a final coat. False where it is not of what is wanted now.
+    pub(super) fn settled(&mut self, recipe: Option<&Recipe>) -> bool {
+        let wanted = self.ordered.as_deref() == recipe && self.touched.is_none();
+        if wanted {
+            self.ordered = None;
+            self.took_ms[1] = self.began.map(|began| began.elapsed().as_secs_f64() * 1e3);
+        }
+        wanted
+    }
+}
+
+/// The same hair in a coat that is quickly baked.
+fn coarse(recipe: &Recipe) -> Recipe {
+    let mut recipe = recipe.clone();
+    let presets = std::iter::once(&mut recipe.preset).chain(recipe.presets.iter_mut().map(|(_, preset)| preset));
+    for preset in presets {
+        let shells = &mut preset.shells;
+        (shells.texture_size, shells.layers) = (shells.texture_size.min(COARSE[0]), shells.layers.min(COARSE[1]));
+    }
+    Recipe { fallback: Fallback::None, ..recipe }
+}
+
+impl App {
+    /// The panel's part about the preset.
+    pub(super) fn parameters(&mut self, ui: &mut Ui) {
+        let Some(edits) = &self.edits else { return };
+        let mut wanted = Vec::new();
+        egui::CollapsingHeader::new("Preset").default_open(false).show(ui, |ui| {
+            if let [Some(coarse), last] = self.baking.took_ms {
+                let last = last.map_or("…".to_owned(), |ms| format!("{ms:.0} ms"));
+                ui.weak(format!("from a change to its coarse coat {coarse:.0} ms, to its final one {last}"));
+            }
+            wanted = parameters::show(ui, edits, &mut self.typed);
+        });
+        for wanted in wanted {
+            if let Err(error) = self.change(wanted) {
+                self.trouble = Some(error);
+            }
+        }
+    }
+
+    fn change(&mut self, wanted: Wanted) -> Result<()> {
+        let Some(edits) = &mut self.edits else { return Ok(()) };
+        match wanted {
+            Wanted::Set(key, value) => {
+                let before = edits.recipe().preset.clone();
+                edits.set(&key, &value)?;
+                if edits.recipe().preset != before {
+                    self.sketch();
+                }
+            }
+            Wanted::LetGo => edits.let_go(),
+            Wanted::Undo => self.undo(),
+            Wanted::Redo => self.redo(),
+            Wanted::Save(file) => {
+                edits.save(file.as_ref())?;
+                self.notes.push(format!("saved as {file}"));
+            }
+            Wanted::Copy => {
+                let command = self.command();
+                self.voice.context.copy_text(command);
+                let turned = self.subject.reading.upright.is_some();
+                let axes = if turned { "; add --up and --forward as they were given" } else { "" };
+                self.notes.push(format!("the command line is in the clipboard{axes}"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Sets a key of the preset, as a script does.
+    ///
+    /// # Errors
+    /// As [`crate::preset::Preset::with_settings`].
+    pub fn set_key(&mut self, key: &str, value: &str) -> Result<()> {
+        self.change(Wanted::Set(key.to_owned(), value.to_owned()))?;
+        self.change(Wanted::LetGo)
+    }
+
+    /// The bake that gives the coat that is shown, as a command line.
+    fn command(&self) -> String {
+        let Some(edits) = &self.edits else { return String::new() };
+        let choices = self.subject.choices.clone().unwrap_or_default();
+        let quoted = |text: &str| {
+            let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:@,+".contains(c);
+            if !text.is_empty() && text.chars().all(plain) {
+                text.to_owned()
+            } else {
+                format!("'{}'", text.replace('\'', "'\\''"))
+            }
+        };
+        let mut words = vec!["furrier bake".to_owned(), quoted(&self.subject.input), "-o furry.glb".to_owned()];
+        words.extend(choices.presets.iter().map(|preset| format!("--preset {}", quoted(preset))));
+        let shells = &edits.recipe().preset.shells;
+        // What stood beside the presets is told as settings, so that what was changed since comes after it.
+        let lapped = choices.texture_size.filter(|_| choices.layout != Layout::Atlas);
+        let beside = [
+            choices.layers.map(|_| format!("shells.layers={}", shells.layers)),
+            lapped.map(|_| format!("shells.texture_size={}", shells.texture_size)),
+        ];
+        let settings = choices.settings.iter().cloned().chain(edits.settings()).chain(beside.into_iter().flatten());
+        words.extend(settings.map(|setting| format!("--set {}", quoted(&setting))));
+        words.extend(choices.materials.iter().map(|material| format!("--material {}", quoted(material))));
+        let word = |value: serde_json::Result<serde_json::Value>| {
+            value.ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
+        };
+        if choices.units != Units::Auto {
+            words.push(format!("--units {}", word(serde_json::to_value(choices.units))));
+        }
+        if choices.layout != Layout::Lapped {
+            words.push(format!("--parameterisation {}", word(serde_json::to_value(choices.layout))));
+        }
+        words.extend(choices.uv_set.map(|set| format!("--uv-set {set}")));
+        let atlas = choices.texture_size.filter(|_| choices.layout == Layout::Atlas);
+        words.extend(atlas.map(|texels| format!("--texture-size {texels}")));
+        words.extend((choices.seed != 0).then(|| format!("--seed {}", choices.seed)));
+        words.push(match choices.fallback {
+            Fallback::None => "--fallback none".to_owned(),
+            Fallback::Shells(count) => format!("--fallback shells:{count}"),
+        });
+        words.join(" ")
+    }
+
+    pub(super) fn undo(&mut self) {
+        if self.edits.as_mut().is_some_and(|edits| edits.undo()) {
+            self.sketch();
+        }
+    }
+
+    pub(super) fn redo(&mut self) {
+        if self.edits.as_mut().is_some_and(|edits| edits.redo()) {
+            self.sketch();
+        }
+    }
+
+    /// Orders the coarse coat of what the preset is now.
+    fn sketch(&mut self) {
+        let Some(edits) = &self.edits else { return };
+        let baking = &mut self.baking;
+        baking.change += 1;
+        (baking.touched, baking.began) = (Some(Instant::now()), Some(Instant::now()));
+        baking.took_ms = [None; 2];
+        let recipe = Box::new(coarse(edits.recipe()));
+        baking.sketches.put(Sketch { subject: self.subject.clone(), recipe, change: baking.change });
+    }
+
+    pub(super) fn sketched(&mut self, change: u64, ready: Result<Ready>) {
+        // A final coat of the same change may have been quicker.
+        if change != self.baking.change || !self.baking.due() {
+            return;
+        }
+        match ready {
+            Ok(ready) => {
+                self.baking.took_ms[0] = self.baking.began.map(|began| began.elapsed().as_secs_f64() * 1e3);
+                self.look_at(ready.model);
+            }
+            Err(error) => self.trouble = Some(error),
+        }
+    }
+
+    /// Orders the final coat once the hand rests.
+    pub(super) fn bake_when_at_rest(&mut self) {
+        let Some(touched) = self.baking.touched else { return };
+        match RESTS.checked_sub(touched.elapsed()) {
+            Some(left) if !left.is_zero() => self.voice.context.request_repaint_after(left),
+            _ => {
+                let Some(edits) = &self.edits else { return };
+                let recipe = Box::new(edits.recipe().clone());
+                self.baking.touched = None;
+                self.baking.ordered = Some(recipe.clone());
+                self.step = Some("bake");
+                self.load.put(Task::Bake(self.subject.clone(), recipe));
+            }
+        }
+    }
+}
