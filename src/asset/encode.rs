@@ -35,11 +35,26 @@ impl Document {
         )
     }
 
-    /// Appends unsigned integers of `width` components each.
+    /// Appends unsigned integers of `width` components each: in 16 bits where all fit, else in 32.
     pub fn push_integers(&mut self, values: &[u32], width: usize, usage: Use) -> usize {
         let kind = ["", "SCALAR", "VEC2", "VEC3", "VEC4"][width];
-        let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-        self.push_accessor(&bytes, kind, 5125, values.len() / width, usage)
+        // 65535 is no index of a primitive: it restarts strips.
+        let short: Option<Vec<u16>> =
+            values.iter().map(|&v| u16::try_from(v).ok().filter(|&short| short < u16::MAX)).collect();
+        let (bytes, component): (Vec<u8>, u32) = match short {
+            Some(short) => (short.iter().flat_map(|v| v.to_le_bytes()).collect(), 5123),
+            None => (values.iter().flat_map(|v| v.to_le_bytes()).collect(), 5125),
+        };
+        self.push_accessor(&bytes, kind, component, values.len() / width, usage)
+    }
+
+    /// Appends quadruples in [0, 1], in 16 bits each.
+    pub fn push_unorm16(&mut self, values: &[Vec4], usage: Use) -> usize {
+        let coded = |v: f32| (v.clamp(0.0, 1.0) * f32::from(u16::MAX)).round() as u16;
+        let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_array()).flat_map(|v| coded(v).to_le_bytes()).collect();
+        let index = self.push_accessor(&bytes, "VEC4", 5123, values.len(), usage);
+        self.json["accessors"][index]["normalized"] = json!(true);
+        index
     }
 
     /// Appends floats of `width` components each.

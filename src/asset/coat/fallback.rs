@@ -200,8 +200,8 @@ fn stack(
         "TEXCOORD_0": document.push_vec2(&uvs, Use::Vertices),
     });
     if tinted && cut.tint.iter().any(|tint| *tint != Vec4::ONE) {
-        let tints: Vec<Vec4> = vertices().map(|(_, v)| cut.tint[v].clamp(Vec4::ZERO, Vec4::ONE)).collect();
-        attributes["COLOR_0"] = json!(document.push_vec4(&tints, Use::Vertices));
+        let tints: Vec<Vec4> = vertices().map(|(_, v)| cut.tint[v]).collect();
+        attributes["COLOR_0"] = json!(document.push_unorm16(&tints, Use::Vertices));
     }
     if part.skins.iter().any(Option::is_some) {
         match (&coat_primitive.cut, &part.stored.influences) {
