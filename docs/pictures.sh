@@ -17,6 +17,10 @@ cd "$work"
 # README.md
 "$furrier" bake sample:creature -o creature.glb --preset fox
 "$furrier" view creature.glb --screenshot "$images/creature.png" --orbit 50,10,1 --size 800x640
+printf 'resize 800 520\nwait\npicture %s\nquit\n' "$images/window.png" > window.txt
+if command -v xvfb-run >/dev/null; then
+    xvfb-run -a "$furrier" view sample:creature --preset fox --orbit 50,10,1.25 --script window.txt
+fi
 if [ -n "$monkey" ]; then
     "$furrier" bake "$monkey" -o furry.glb --preset rabbit
     "$furrier" view furry.glb --screenshot "$images/monkey.png" --orbit 25,10,1 --size 800x640

@@ -9,7 +9,7 @@ const FURTHEST: f32 = 1.5;
 /// A tip that is nearer to where it rests, in lengths of its hair, and as slow, has come to rest.
 const STILL: f32 = 1e-5;
 /// Speed of a wind that bends hair by as much as it is long, m/s.
-const BENDING_M_PER_S: f32 = 12.0;
+const BENDING_M_PER_S: f32 = 14.0;
 /// Frequencies and wave numbers of gusts, over those of the first, and their shares: no whole ratios, so that they do not repeat.
 const GUSTS: [(f32, f32); 3] = [(1.0, 0.5), (2.3, 0.3), (5.1, 0.2)];
 

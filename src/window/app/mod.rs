@@ -99,6 +99,8 @@ pub struct App {
     waiting: Option<Instant>,
     failed: Option<Error>,
     aspect: f64,
+    /// The eye as it framed the asset, and for which aspect.
+    framed: (f64, Eye),
 }
 
 impl App {
@@ -119,9 +121,10 @@ impl App {
         let mut subject = begin.subject;
         let scratch = if subject.cache.is_none() { tempfile::tempdir().ok() } else { None };
         subject.cache = subject.cache.or(scratch.as_ref().map(|folder| Store::new(folder.path())));
+        let eye = Eye::first(&begin.stage.viewpoint, &Default::default(), 1.0);
         let mut app = Self {
             state: State {
-                eye: Eye::first(&begin.stage.viewpoint, &Default::default(), 1.0),
+                eye,
                 lighting,
                 development: begin.stage.development,
                 shown: begin.shown,
@@ -159,6 +162,7 @@ impl App {
             waiting: None,
             failed: None,
             aspect: 1.0,
+            framed: (0.0, eye),
         };
         app.read();
         Ok(app)

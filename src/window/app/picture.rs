@@ -34,6 +34,7 @@ impl App {
         }
         let size = canvas::size(ui, rects[1]);
         self.aspect = f64::from(size[0]) / f64::from(size[1]);
+        self.frame_again();
         if !self.wipe(ui, &response) {
             canvas::steer(ui, &response, &mut self.state.eye);
         }

@@ -111,6 +111,7 @@ impl App {
     pub(super) fn look_at(&mut self, model: Arc<Model>) {
         if std::mem::take(&mut self.fresh) {
             self.state.eye = Eye::first(&self.viewpoint.viewpoint, &model.subject, self.aspect);
+            self.framed = (self.aspect, self.state.eye);
             if let Err(error) = self.viewpoint.viewpoint.camera(&model.subject, self.aspect) {
                 self.trouble = Some(error);
             }
@@ -124,6 +125,16 @@ impl App {
         let clock = &mut self.state.clock;
         clock.animation = clock.animation.filter(|at| *at < model.animations.len());
         self.model = Some(model);
+    }
+
+    /// Where nobody has moved the eye yet, all of the asset stays in the picture, whatever its size becomes.
+    pub(super) fn frame_again(&mut self) {
+        let Some(model) = &self.model else { return };
+        let (aspect, eye) = self.framed;
+        if self.state.eye == eye && aspect != self.aspect {
+            self.state.eye = Eye::first(&self.viewpoint.viewpoint, &model.subject, self.aspect);
+            self.framed = (self.aspect, self.state.eye);
+        }
     }
 
     /// A map becomes light and sky; another asset is looked at.
