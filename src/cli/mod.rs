@@ -17,6 +17,8 @@ mod progress;
 mod recipe;
 mod render;
 mod report;
+#[cfg(feature = "window")]
+mod spoken;
 mod stage;
 mod strip;
 mod view;

@@ -1,9 +1,11 @@
 //! The flags that say how a coat is baked, whatever it is baked on.
 
 use super::axes::AxesArgs;
+use crate::asset::Reading;
 use crate::asset::coat::Fallback;
 use crate::bake::recipe::{Choices, Layout, split_choice};
 use crate::bake::units::Units;
+use crate::error::Result;
 use crate::preset::Preset;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -62,6 +64,14 @@ impl RecipeArgs {
     /// Whether anything about hair was chosen.
     pub fn chosen(&self) -> bool {
         !self.presets.is_empty() || !self.settings.is_empty()
+    }
+
+    /// How the input is read, apart from its coat.
+    ///
+    /// # Errors
+    /// As [`AxesArgs::reading`].
+    pub fn reading(&self) -> Result<Reading> {
+        self.axes.reading()
     }
 
     /// What was chosen.

@@ -1,6 +1,5 @@
 //! `furrier view`.
 
-use super::axes::AxesArgs;
 use super::cache_flags::CacheFlags;
 use super::console::Console;
 use super::output;
@@ -50,8 +49,6 @@ pub struct View {
     show: String,
     #[command(flatten)]
     stage: StageArgs,
-    #[command(flatten)]
-    axes: AxesArgs,
     /// A mesh to lay beside or into the fur, in the asset's units and axes: grey and opaque, it hides what it covers and casts
     /// its shadow; the camera is framed without it
     #[arg(long, value_name = "FILE|sample:NAME")]
@@ -158,7 +155,7 @@ impl View {
 
     /// What is looked at: read, or baked first.
     fn subject(&self, console: &Console) -> Result<(Asset, Coat)> {
-        let reading = self.axes.reading()?;
+        let reading = self.recipe.reading()?;
         if !self.bakes() {
             return asset::coat::read_coat_as(Path::new(&self.file), &reading);
         }
@@ -175,6 +172,8 @@ impl View {
     /// Opens the window.
     #[cfg(feature = "window")]
     fn open(self) -> Result<()> {
+        use super::spoken;
+        use crate::error::Kind;
         use crate::window::{self, Begin, loading, script::Script};
         if self.occluder.is_some() {
             return Err(Error::usage("the window shows the asset alone")
@@ -184,12 +183,30 @@ impl View {
         let ViewOptions { device, stage, show, moment, shadow_map, level, .. } = self.options()?;
         let subject = loading::Subject {
             input: self.file.clone(),
-            reading: self.axes.reading()?,
+            reading: self.recipe.reading()?,
             choices: self.bakes().then(|| self.recipe.choices()),
             cache: self.cache.store(),
         };
         let script = self.script.as_deref().map(Script::read).transpose()?.unwrap_or_default();
-        window::open(Begin { subject, stage, shown: show, level, moment, shadow: shadow_map, device, script })
+        window::open(Begin {
+            subject,
+            stage,
+            shown: show,
+            level,
+            moment,
+            shadow: shadow_map,
+            device,
+            in_words: spoken::bake,
+            script,
+        })
+        .map_err(|error| {
+            let instead = "write a picture, which needs no window: `--screenshot OUT.png`";
+            match (error.kind, error.hint.clone()) {
+                (Kind::Device, Some(hint)) => error.with_hint(format!("{hint}; or {instead}")),
+                (Kind::Device, None) => error.with_hint(instead),
+                _ => error,
+            }
+        })
     }
 
     /// Says that there is no window.
@@ -201,7 +218,7 @@ impl View {
     }
 
     fn options(&self) -> Result<ViewOptions> {
-        let reading = self.axes.reading()?;
+        let reading = self.recipe.reading()?;
         Ok(ViewOptions {
             device: self.device.parse::<Choice>()?,
             stage: self.stage.options()?,

@@ -98,7 +98,7 @@ impl Edits {
         toml::to_string(&value).map_err(unwritable)
     }
 
-    /// What was changed, as `table.key=value` of `--set`.
+    /// What was changed, as `table.key=value` each.
     pub fn settings(&self) -> Vec<String> {
         let value = |preset: &Preset| toml::Value::try_from(preset).ok();
         let (Some(base), Some(mut now)) = (value(&self.base.preset), value(&self.now.preset)) else {

@@ -99,8 +99,10 @@ impl PartialEq for Lighting {
 impl Lighting {
     /// As the command line asked.
     pub fn new(asked: Options) -> Self {
-        let surroundings =
-            asked.environment.clone().map(|environment| Arc::new(Surroundings::new("--env".to_owned(), environment)));
+        let surroundings = asked
+            .environment
+            .clone()
+            .map(|environment| Arc::new(Surroundings::new("as asked for".to_owned(), environment)));
         let source = if surroundings.is_some() { Source::Surroundings } else { Source::Asked };
         Self { source, surroundings, asked, sky: true, turn_deg: 0.0, raise_deg: 0.0, stops: 0.0, shadow: true }
     }

@@ -26,11 +26,9 @@ impl Painter {
     /// As [`Gpu::open_for_surface`].
     pub fn new(window: Arc<Window>, choice: &Choice) -> Result<Self> {
         let make = |instance: &wgpu::Instance| {
-            instance.create_surface(window).map_err(|error| {
-                Error::new(Kind::Device, "the window cannot be drawn into")
-                    .with_found(error)
-                    .with_hint("`--screenshot OUT.png` needs none")
-            })
+            instance
+                .create_surface(window)
+                .map_err(|error| Error::new(Kind::Device, "the window cannot be drawn into").with_found(error))
         };
         let (gpu, Screen { surface, configuration }) = Gpu::open_for_surface(choice, make)?;
         let renderer = Renderer::new(&gpu.device, configuration.format, RendererOptions::default());

@@ -25,8 +25,7 @@ struct Wake(Duration);
 pub fn open(begin: Begin) -> Result<()> {
     let no_display = |error: &dyn std::fmt::Display| {
         Error::new(Kind::Device, "no window can be opened").with_found(error).with_hint(
-            "run it where there is a display (DISPLAY or WAYLAND_DISPLAY is set), under a virtual one (`xvfb-run furrier view …`), \
-             or write a picture: `--screenshot OUT.png`",
+            "run it where there is a display (DISPLAY or WAYLAND_DISPLAY is set), or under a virtual one (`xvfb-run furrier view …`)",
         )
     };
     let events = EventLoop::<Wake>::with_user_event().build().map_err(|error| no_display(&error))?;
@@ -64,11 +63,9 @@ impl Opened {
         let attributes = Window::default_attributes()
             .with_title(format!("furrier: {}", begin.subject.input))
             .with_inner_size(LogicalSize::new(remembered.size[0], remembered.size[1]));
-        let window = events.create_window(attributes).map_err(|error| {
-            Error::new(Kind::Device, "no window can be opened")
-                .with_found(error)
-                .with_hint("`--screenshot OUT.png` needs none")
-        })?;
+        let window = events
+            .create_window(attributes)
+            .map_err(|error| Error::new(Kind::Device, "no window can be opened").with_found(error))?;
         let window = Arc::new(window);
         let painter = Painter::new(Arc::clone(&window), choice)?;
         let context = egui::Context::default();

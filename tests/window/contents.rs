@@ -26,6 +26,7 @@ pub fn begin(subject: loading::Subject) -> Begin {
         moment: None,
         shadow: true,
         device: Choice::Auto,
+        in_words: |input, choices| format!("{input} {}", choices.settings.join(" ")),
         script: Script::default(),
     }
 }

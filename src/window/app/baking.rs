@@ -2,8 +2,7 @@
 
 use super::{App, Voice, Word};
 use crate::asset::coat::Fallback;
-use crate::bake::recipe::{Layout, Recipe};
-use crate::bake::units::Units;
+use crate::bake::recipe::{Choices, Layout, Recipe};
 use crate::error::Result;
 use crate::window::loading::{self, Ready, Sketch, Task};
 use crate::window::mailbox::Sender;
@@ -114,9 +113,7 @@ impl App {
             Wanted::Copy => {
                 let command = self.command();
                 self.voice.context.copy_text(command);
-                let turned = self.subject.reading.upright.is_some();
-                let axes = if turned { "; add --up and --forward as they were given" } else { "" };
-                self.notes.push(format!("the command line is in the clipboard{axes}"));
+                self.notes.push("the command line is in the clipboard".to_owned());
             }
         }
         Ok(())
@@ -135,16 +132,6 @@ impl App {
     fn command(&self) -> String {
         let Some(edits) = &self.edits else { return String::new() };
         let choices = self.subject.choices.clone().unwrap_or_default();
-        let quoted = |text: &str| {
-            let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:@,+".contains(c);
-            if !text.is_empty() && text.chars().all(plain) {
-                text.to_owned()
-            } else {
-                format!("'{}'", text.replace('\'', "'\\''"))
-            }
-        };
-        let mut words = vec!["furrier bake".to_owned(), quoted(&self.subject.input), "-o furry.glb".to_owned()];
-        words.extend(choices.presets.iter().map(|preset| format!("--preset {}", quoted(preset))));
         let shells = &edits.recipe().preset.shells;
         // What stood beside the presets is told as settings, so that what was changed since comes after it.
         let lapped = choices.texture_size.filter(|_| choices.layout != Layout::Atlas);
@@ -153,26 +140,9 @@ impl App {
             lapped.map(|_| format!("shells.texture_size={}", shells.texture_size)),
         ];
         let settings = choices.settings.iter().cloned().chain(edits.settings()).chain(beside.into_iter().flatten());
-        words.extend(settings.map(|setting| format!("--set {}", quoted(&setting))));
-        words.extend(choices.materials.iter().map(|material| format!("--material {}", quoted(material))));
-        let word = |value: serde_json::Result<serde_json::Value>| {
-            value.ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
-        };
-        if choices.units != Units::Auto {
-            words.push(format!("--units {}", word(serde_json::to_value(choices.units))));
-        }
-        if choices.layout != Layout::Lapped {
-            words.push(format!("--parameterisation {}", word(serde_json::to_value(choices.layout))));
-        }
-        words.extend(choices.uv_set.map(|set| format!("--uv-set {set}")));
-        let atlas = choices.texture_size.filter(|_| choices.layout == Layout::Atlas);
-        words.extend(atlas.map(|texels| format!("--texture-size {texels}")));
-        words.extend((choices.seed != 0).then(|| format!("--seed {}", choices.seed)));
-        words.push(match choices.fallback {
-            Fallback::None => "--fallback none".to_owned(),
-            Fallback::Shells(count) => format!("--fallback shells:{count}"),
-        });
-        words.join(" ")
+        let texture_size = choices.texture_size.filter(|_| choices.layout == Layout::Atlas);
+        let told = Choices { settings: settings.collect(), layers: None, texture_size, ..choices };
+        (self.in_words)(&self.subject.input, &told)
     }
 
     pub(super) fn undo(&mut self) {

@@ -1,5 +1,6 @@
 //! What a window begins with, and what it wishes of whoever shows it.
 
+use crate::bake::recipe::Choices;
 use crate::gpu::Choice;
 use crate::stage::options::Options;
 use crate::viewer::Shown;
@@ -23,6 +24,8 @@ pub struct Begin {
     pub shadow: bool,
     /// Which adapter draws.
     pub device: Choice,
+    /// The bake of an input with these choices, as a command line.
+    pub in_words: fn(&str, &Choices) -> String,
     /// What to do, if somebody else does it than a person.
     pub script: Script,
 }

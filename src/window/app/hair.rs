@@ -62,7 +62,7 @@ impl App {
         }
         let Some(edits) = &self.edits else {
             self.hair.why_not =
-                Some("a file with a coat does not hold its hair: open the mesh with --preset".to_owned());
+                Some("a file with a coat does not hold its hair: open the mesh with a preset".to_owned());
             return;
         };
         self.hair.why_not = None;

@@ -26,6 +26,7 @@ use super::script::Script;
 use super::state::{Clock, Open, State};
 use super::truth::{self, Truth};
 use super::watch::Watch;
+use crate::bake::recipe::Choices;
 use crate::cache::Store;
 use crate::error::{Error, Result};
 use crate::runtime::Wind;
@@ -70,6 +71,8 @@ pub struct App {
     /// What the person decides.
     pub state: State,
     subject: loading::Subject,
+    /// As [`Begin::in_words`].
+    in_words: fn(&str, &Choices) -> String,
     /// Finished stages of this window, where nothing else keeps them.
     _scratch: Option<TempDir>,
     viewpoint: Options,
@@ -135,6 +138,7 @@ impl App {
                 spring: None,
                 open: Open { panel: true, help: false, counting: false },
             },
+            in_words: begin.in_words,
             subject,
             _scratch: scratch,
             viewpoint: begin.stage,

@@ -122,6 +122,12 @@ impl App {
                 }
             }
         }
+        // With its coat it is larger.
+        let dressed = model.furred() && self.model.as_ref().is_some_and(|bare| !bare.furred());
+        if dressed && self.state.eye == self.framed.1 {
+            self.state.eye = Eye::first(&self.viewpoint.viewpoint, &model.subject, self.aspect);
+            self.framed = (self.aspect, self.state.eye);
+        }
         let clock = &mut self.state.clock;
         clock.animation = clock.animation.filter(|at| *at < model.animations.len());
         self.model = Some(model);
