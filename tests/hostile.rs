@@ -58,9 +58,13 @@ pub fn unsound(asset: &Asset) -> Option<String> {
             Ok(mesh) => mesh,
             Err(error) => return Some(error.to_string()),
         };
-        let finite = mesh.uv_sets.iter().flatten().all(|uv| uv.is_finite())
-            && (0..mesh.positions_m.len()).all(|v| part.local_offset(v, mesh.normals[v], 1.0).is_finite());
-        (!finite || mesh.triangles.is_empty()).then(|| "holds numbers that are not finite, or no triangle".to_owned())
+        if !mesh.uv_sets.iter().flatten().all(|uv| uv.is_finite()) {
+            return Some("holds texture coordinates that are not finite".to_owned());
+        }
+        if !(0..mesh.positions_m.len()).all(|v| part.local_offset(v, mesh.normals[v], 1.0).is_finite()) {
+            return Some("holds offsets that are not finite".to_owned());
+        }
+        mesh.triangles.is_empty().then(|| "holds no triangle".to_owned())
     })
 }
 
@@ -72,6 +76,11 @@ fn every_hard_file_ends_as_its_readme_says() {
     assert!(table.len() > 60, "the table has only {} rows", table.len());
     for (name, expected) in table {
         let result = asset::load(&folder.join(&name).to_string_lossy());
+        // A broken picture of what gets fur is refused when it is chosen; of all else it is no reason.
+        let result = match expected {
+            Expected::Reject => result.and_then(|asset| asset::select(&asset.parts, &[]).map(|_| asset)),
+            _ => result,
+        };
         faults.extend(fault(expected, &result).map(|fault| format!("{name} {fault}")));
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));

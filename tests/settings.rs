@@ -153,3 +153,25 @@ fn a_setting_that_fails_says_what_its_key_expects() {
     let error = set(&["groom.whorls[0].spin_deg=1"]).unwrap_err();
     assert!(error.found.is_some_and(|found| found.contains("at")));
 }
+
+#[test]
+fn a_target_gives_way_to_what_is_chosen_beside_it() {
+    use furrier::asset::coat::Fallback;
+    use furrier::bake::recipe::{Choices, Target};
+    let phone = Choices { target: Target::Phone, ..Choices::default() };
+    let recipe = phone.recipe().unwrap();
+    assert_eq!((recipe.preset.shells.layers, recipe.preset.shells.texture_size), (4, 64));
+    assert_eq!(recipe.fallback, Fallback::Shells(2));
+    let own = Choices {
+        settings: vec!["shells.layers=6".to_owned()],
+        texture_size: Some(32),
+        fallback: Some(Fallback::None),
+        ..phone
+    };
+    let recipe = own.recipe().unwrap();
+    assert_eq!((recipe.preset.shells.layers, recipe.preset.shells.texture_size), (6, 32));
+    assert_eq!(recipe.fallback, Fallback::None);
+    // Without one, all is as it is.
+    let plain = Choices::default().recipe().unwrap();
+    assert_eq!((plain.preset, plain.fallback), (furrier::preset::Preset::load("fox").unwrap(), Fallback::Shells(8)));
+}

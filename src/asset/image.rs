@@ -73,7 +73,8 @@ impl Document {
             size.map_err(|error| self.broken_image(index, &error))?
         };
         if width.max(height) > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_PIXELS {
-            return Err(Error::input("an image is too large")
+            return Err(self
+                .told(Error::input("an image is too large"))
                 .with_field(format!("images[{index}]"))
                 .with_found(format!("{width} × {height} pixels in its header"))
                 .with_expected(format!("at most {MAX_SIDE} a side and {MAX_PIXELS} in all"))
@@ -96,8 +97,16 @@ impl Document {
         decode(&bytes, format).map(Some).map_err(|error| self.broken_image(index, &error))
     }
 
+    /// With the file that was read.
+    fn told(&self, error: Error) -> Error {
+        match self.files.first() {
+            Some(file) => error.with_file(file),
+            None => error,
+        }
+    }
+
     fn broken_image(&self, index: usize, error: &dyn std::fmt::Display) -> Error {
-        Error::input("an image cannot be decoded")
+        self.told(Error::input("an image cannot be decoded"))
             .with_field(format!("images[{index}]"))
             .with_found(error)
             .with_expected("a whole PNG, JPEG, WebP or KTX2")

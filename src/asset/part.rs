@@ -4,7 +4,7 @@ use super::document::Document;
 use super::json::At;
 use super::material::{Alpha, BaseColour, Material};
 use super::repair::Notes;
-use super::scene_graph::SceneGraph;
+use super::scene_graph::{SceneGraph, within_reach};
 use super::stored::Primitive;
 use super::variants::{Variant, variants};
 use crate::data::mesh::Mesh;
@@ -86,14 +86,14 @@ impl Part {
                 .filter(|&&(_, weight)| weight > 0.0)
                 .fold(DMat4::ZERO, |sum, &(joint, weight)| sum + joints[usize::from(joint)] * f64::from(weight));
             let determinant = DMat3::from_mat4(blend).determinant();
-            if !determinant.is_finite() || determinant == 0.0 {
-                return Err(Error::input("the rest pose of a skin flattens a vertex, so hair has no way up")
+            if !determinant.is_finite() || determinant == 0.0 || !within_reach(&blend) {
+                return Err(Error::input("the rest pose of a skin flattens or tears a vertex, so hair has no way up")
                     .with_field(format!(
                         "skins[{skin}] (vertex {v} of meshes[{}].primitives[{}])",
                         self.mesh, self.primitive
                     ))
                     .with_found(format!("determinant {determinant:e}"))
-                    .with_expected("joints with a scale other than zero")
+                    .with_expected("joints with a scale other than zero, and within 1e15")
                     .with_hint("bake the rest pose with every joint's scale at 1"));
             }
             maps.push(DAffine3::from_mat4(blend));

@@ -6,6 +6,9 @@ use super::lod::Levels;
 use crate::error::{Error, Result};
 use crate::math::{DMat3, DMat4, DQuat, DVec3, Vec3};
 
+/// Largest scale and way of a node in the world; the least scale is one over it.
+const MOST_SCALE: f64 = 1e15;
+
 /// A node's own transform.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Local {
@@ -223,7 +226,18 @@ impl SceneGraph {
         let size = linear.x_axis.length().max(linear.y_axis.length()).max(linear.z_axis.length());
         let determinant = linear.determinant();
         if determinant.is_finite() && determinant.abs() > 1e-12 * size.powi(3) && size > 0.0 {
-            return Ok(());
+            if within_reach(world) {
+                return Ok(());
+            }
+            let far = world.w_axis.truncate().abs().max_element();
+            return Err(Error::input("a node's world matrix is beyond what places can be told in")
+                .with_field(format!("nodes[{node}]"))
+                .with_found(format!("a scale of {size:e}, a way of {far:e}"))
+                .with_expected(format!(
+                    "scales from {:e} to {MOST_SCALE:e}, ways up to {MOST_SCALE:e}",
+                    1.0 / MOST_SCALE
+                ))
+                .with_hint("apply the scale in the modelling program before exporting"));
         }
         Err(Error::input("a node's world matrix is singular, so its mesh is flat and hair has no way up")
             .with_field(format!("nodes[{node}]"))
@@ -231,6 +245,17 @@ impl SceneGraph {
             .with_expected("a scale other than zero along every axis")
             .with_hint("apply the scale in the modelling program before exporting"))
     }
+}
+
+/// Whether a map and its inverse stay within what places can be told in.
+pub fn within_reach(map: &DMat4) -> bool {
+    let linear = DMat3::from_mat4(*map);
+    let most = |m: &DMat3| m.to_cols_array().into_iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let inverse = linear.inverse();
+    inverse.is_finite()
+        && most(&inverse) <= MOST_SCALE
+        && most(&linear) <= MOST_SCALE
+        && map.w_axis.truncate().abs().max_element() <= MOST_SCALE
 }
 
 fn read_skin(document: &Document, skin: &At<'_>) -> Result<Skin> {

@@ -23,6 +23,42 @@ pub enum Layout {
     Uv,
 }
 
+/// What a coat is to be drawn by, in a word: how many slabs and texels it can do with. What is chosen beside it goes before it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Target {
+    /// As presets say.
+    #[default]
+    Desktop,
+    /// Two eyes at a high rate.
+    Vr,
+    /// Files that are waited for.
+    Web,
+    /// Little memory, few reads.
+    Phone,
+}
+
+impl Target {
+    /// Layers and texels along a tile's edge, where they are others than the preset's.
+    fn shells(self) -> Option<[u32; 2]> {
+        match self {
+            Self::Desktop => None,
+            Self::Vr => Some([9, 128]),
+            Self::Web => Some([9, 64]),
+            Self::Phone => Some([4, 64]),
+        }
+    }
+
+    /// What viewers without the extension see.
+    fn fallback(self) -> Fallback {
+        Fallback::Shells(match self {
+            Self::Desktop | Self::Vr => 8,
+            Self::Web => 4,
+            Self::Phone => 2,
+        })
+    }
+}
+
 /// What was chosen, by name where things have names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choices {
@@ -44,8 +80,10 @@ pub struct Choices {
     pub texture_size: Option<u32>,
     /// Decides all that is random.
     pub seed: u64,
-    /// What viewers without the extension see.
-    pub fallback: Fallback,
+    /// What viewers without the extension see; what the target says where nothing is chosen.
+    pub fallback: Option<Fallback>,
+    /// What the coat is to be drawn by.
+    pub target: Target,
     /// Which axis of the file is up; glTF's where none is named.
     pub up: Option<Axis>,
     /// Which of them its front looks along.
@@ -66,7 +104,8 @@ impl Default for Choices {
             layers: None,
             texture_size: None,
             seed: 0,
-            fallback: Fallback::Shells(8),
+            fallback: None,
+            target: Target::Desktop,
             up: None,
             forward: None,
             lods: false,
@@ -146,7 +185,7 @@ impl Choices {
                 Layout::Uv => Method::Uv(self.uv_set.unwrap_or(0)),
             },
             seed: self.seed,
-            fallback: self.fallback,
+            fallback: self.fallback.unwrap_or(self.target.fallback()),
             upright: Upright::of(self.up, self.forward)?,
             lods: self.lods,
         })
@@ -154,6 +193,10 @@ impl Choices {
 
     /// `preset` with what was chosen instead.
     fn adjusted(&self, preset: Preset) -> Result<Preset> {
+        let mut preset = preset;
+        if let Some([layers, texels]) = self.target.shells() {
+            (preset.shells.layers, preset.shells.texture_size) = (layers, texels);
+        }
         let mut preset = preset.with_settings(&self.settings)?;
         preset.shells.layers = self.layers.unwrap_or(preset.shells.layers);
         preset.shells.texture_size = self.texture_size.unwrap_or(preset.shells.texture_size);

@@ -3,7 +3,7 @@
 use super::axes::AxesArgs;
 use crate::asset::Reading;
 use crate::asset::coat::Fallback;
-use crate::bake::recipe::{Choices, Layout, split_choice};
+use crate::bake::recipe::{Choices, Layout, Target, split_choice};
 use crate::bake::units::Units;
 use crate::error::Result;
 use crate::preset::Preset;
@@ -44,9 +44,13 @@ pub struct RecipeArgs {
     /// Where random numbers start; the same seed gives the same bytes
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// What programs without the extension show: the bare skin, or N shells as plain meshes
-    #[arg(long, value_name = "none|shells:N", default_value = "shells:8")]
-    fallback: Fallback,
+    /// What programs without the extension show: the bare skin, or N shells as plain meshes [default: shells:8]
+    #[arg(long, value_name = "none|shells:N")]
+    fallback: Option<Fallback>,
+    /// What the coat is to be drawn by: sets layers, texels and fallback, where nothing else does. desktop: as the preset says;
+    /// vr: 9 layers; web: 9 layers of 64 texels, shells:4; phone: 4 layers of 64 texels, shells:2
+    #[arg(long, value_enum, default_value_t)]
+    target: TargetName,
     /// Fur coarser levels of detail too (names such as `Beast_LOD1` beside `Beast_LOD0`, or MSFT_lod), each by itself
     #[arg(long)]
     lods: bool,
@@ -87,9 +91,32 @@ impl RecipeArgs {
             texture_size: self.texture_size,
             seed: self.seed,
             fallback: self.fallback,
+            target: self.target.target(),
             up: self.axes.up,
             forward: self.axes.forward,
             lods: self.lods,
+        }
+    }
+}
+
+/// Targets by name.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum TargetName {
+    #[default]
+    Desktop,
+    Vr,
+    Web,
+    Phone,
+}
+
+impl TargetName {
+    /// What it stands for.
+    fn target(self) -> Target {
+        match self {
+            Self::Desktop => Target::Desktop,
+            Self::Vr => Target::Vr,
+            Self::Web => Target::Web,
+            Self::Phone => Target::Phone,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A bake as the command line that asks for it.
 
 use crate::asset::coat::Fallback;
-use crate::bake::recipe::{Choices, Layout};
+use crate::bake::recipe::{Choices, Layout, Target};
 use crate::bake::units::Units;
 use serde::Serialize;
 
@@ -18,10 +18,11 @@ pub fn bake(input: &str, choices: &Choices) -> String {
     words.extend(choices.layers.map(|layers| format!("--layers {layers}")));
     words.extend(choices.texture_size.map(|texels| format!("--texture-size {texels}")));
     words.extend((choices.seed != 0).then(|| format!("--seed {}", choices.seed)));
-    words.push(match choices.fallback {
+    words.extend(choices.fallback.map(|fallback| match fallback {
         Fallback::None => "--fallback none".to_owned(),
         Fallback::Shells(count) => format!("--fallback shells:{count}"),
-    });
+    }));
+    words.extend((choices.target != Target::Desktop).then(|| format!("--target {}", name(choices.target))));
     words.extend(choices.up.map(|axis| format!("--up={}", name(axis))));
     words.extend(choices.forward.map(|axis| format!("--forward={}", name(axis))));
     words.extend(choices.lods.then(|| "--lods".to_owned()));

@@ -130,7 +130,7 @@ fn read(subject: &Subject, tell: &dyn Fn(News)) -> Result<Ready> {
     let Some(choices) = &subject.choices else {
         tell(News::Step("read"));
         let (asset, coat) = read_coat_as(Path::new(&subject.input), &subject.reading)
-            .map_err(|error| error.with_hint("a mesh without a coat is baked with a preset: `--preset fox`"))?;
+            .map_err(|error| error.with_hint("a mesh without a coat is baked with a preset, as `fox`"))?;
         let notes = asset.warnings.clone();
         let model = Arc::new(Model::new(asset, coat)?);
         return Ok(Ready { model, recipe: None, notes, ms: start.elapsed().as_secs_f64() * 1e3, read: true });

@@ -167,7 +167,8 @@ pub fn mesh(bytes: &[u8], name: &str, folder: &Path, case: u64) -> bool {
     assert_eq!(unsound(&asset), None);
     let used =
         use_asset(&asset, &out).and_then(|()| if case.is_multiple_of(32) { baked(&input, &out) } else { Ok(()) });
-    if used.is_err() {
+    if let Err(error) = &used {
+        assert!(!out.exists(), "written, and then: {error}");
         nothing_is_left(folder);
     } else {
         std::fs::remove_file(&out).expect("it was written");

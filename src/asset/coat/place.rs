@@ -71,7 +71,7 @@ fn animate(document: &mut Document, node: usize, added: usize) {
     let skinned = document.json["nodes"][added].get("skin").is_some();
     let animations = document.json.get_mut("animations").and_then(Value::as_array_mut);
     for animation in animations.into_iter().flatten() {
-        let Some(channels) = animation["channels"].as_array_mut() else { continue };
+        let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) else { continue };
         let mut copies = Vec::new();
         for channel in channels.iter() {
             let target = &channel["target"];

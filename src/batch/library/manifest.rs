@@ -5,7 +5,7 @@ use super::pattern::Pattern;
 use super::scan;
 use crate::asset::axes::Axis;
 use crate::asset::coat::Fallback;
-use crate::bake::recipe::{Choices, Layout, Recipe, split_choice};
+use crate::bake::recipe::{Choices, Layout, Recipe, Target, split_choice};
 use crate::bake::units::Units;
 use crate::error::{Error, Result};
 use crate::preset::Preset;
@@ -44,6 +44,8 @@ pub struct Rule {
     pub seed: Option<u64>,
     /// What viewers without the extension see: `none` or `shells:N`.
     pub fallback: Option<String>,
+    /// What the coats are to be drawn by.
+    pub target: Option<Target>,
     /// Which axis of the files is up.
     pub up: Option<Axis>,
     /// Which of them their fronts look along.
@@ -184,7 +186,8 @@ impl Manifest {
             layers: rule.layers,
             texture_size: rule.texture_size,
             seed: rule.seed.unwrap_or(default.seed),
-            fallback: fallback.transpose()?.unwrap_or(default.fallback),
+            fallback: fallback.transpose()?,
+            target: rule.target.unwrap_or(default.target),
             up: rule.up,
             forward: rule.forward,
             lods: rule.lods.unwrap_or(default.lods),
@@ -218,6 +221,7 @@ fn over(under: Rule, rule: Rule) -> Rule {
         texture_size: rule.texture_size.or(under.texture_size),
         seed: rule.seed.or(under.seed),
         fallback: rule.fallback.or(under.fallback),
+        target: rule.target.or(under.target),
         up: rule.up.or(under.up),
         forward: rule.forward.or(under.forward),
         lods: rule.lods.or(under.lods),

@@ -112,7 +112,7 @@ impl Subject {
             layers: self.layers,
             texture_size: self.texture_size,
             seed: self.seed,
-            fallback: Fallback::None,
+            fallback: Some(Fallback::None),
             up: self.axes.up,
             forward: self.axes.forward,
             ..Choices::default()
