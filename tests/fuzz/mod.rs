@@ -143,6 +143,16 @@ fn glb() {
     try_all("glb", 300);
 }
 
+/// Cases that ended badly once: joints and nodes of no size or beyond all numbers, and an animation without channels, to which a coat added
+/// null.
+#[test]
+fn cases_of_glb_that_were_faults() {
+    for case in [513, 2425, 3411, 4726, 5532, 5601] {
+        let ended = run("glb", case, 1, LONGEST);
+        assert_eq!((ended.tried, ended.fault), (1, None), "case {case}");
+    }
+}
+
 #[test]
 fn gltf() {
     try_all("gltf", 300);
