@@ -4,7 +4,7 @@
 #   docs/pictures.sh FURRIER [MONKEY.glb]
 #
 # FURRIER is the program; MONKEY.glb the head that README.md furs (Blender: Add, Mesh, Monkey, Subdivision 2, smooth), without which
-# its picture stays. The picture of three.js is a browser's and not made here. Takes half a minute on two cores.
+# its picture stays. The picture of three.js is a browser's and not made here. Takes a minute and a half on two cores.
 set -eu
 
 furrier=$(realpath "$1")

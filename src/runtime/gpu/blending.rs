@@ -1,8 +1,9 @@
 //! Coats drawn without an order.
 
+use super::pipelines::CoatPipelines;
 use super::prepared::Prepared;
 use super::targets::{Targets, attachment};
-use super::unsorted::{Sums, Unsorted};
+use super::unsorted::{self, Sums};
 use super::{PassCost, Renderer};
 use crate::error::Result;
 use crate::runtime::draw_list::{Blending, Show};
@@ -31,14 +32,20 @@ impl Prepared<'_> {
                 skin = self.draw_skins(&mut pass, &pipelines.skin, &order.details);
             }
         };
-        let mut draw_coat = |mut pass: wgpu::RenderPass<'_>, by: &Unsorted| {
+        let mut draw_coat = |mut pass: wgpu::RenderPass<'_>, by: &CoatPipelines| {
             pass.set_bind_group(0, group, &[]);
             for runs in &order.pieces {
-                self.draw_coat(&mut pass, runs, &order.details, |fur, fins| Some(by.of(fur, fins, show)), &mut coat);
+                self.draw_coat(
+                    &mut pass,
+                    runs,
+                    &order.details,
+                    |fur, fins| Some(by.of(fins, fur.painted, show.fins)),
+                    &mut coat,
+                );
             }
         };
         if blend == Blending::Hashed {
-            let hashed = self.hashed.get_or_init(|| Unsorted::hashed(gpu, pipelines));
+            let hashed = self.hashed.get_or_init(|| unsorted::hashed(gpu, pipelines));
             draw_coat(targets.coat_pass(encoder, "hashed", true, self.timer.writes(1)), hashed);
             targets.hide_skin(encoder, pipelines);
             draw_skin(encoder);
@@ -46,7 +53,7 @@ impl Prepared<'_> {
             return Ok([coat, skin]);
         }
         draw_skin(encoder);
-        let weighted = self.weighted.get_or_init(|| Unsorted::weighted(gpu, pipelines));
+        let weighted = self.weighted.get_or_init(|| unsorted::weighted(gpu, pipelines));
         let sums = Sums::new(gpu, pipelines, targets, *samples)?;
         let cleared = |view, colour| Some(attachment(view, wgpu::LoadOp::Clear(colour)));
         let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

@@ -5,14 +5,11 @@ use super::measuring::{CostPipelines, DepthPipelines};
 use super::prepared::Prepared;
 use super::resources::GpuFur;
 use super::targets::Targets;
-use super::unsorted::Unsorted;
+use super::unsorted;
 use super::{PassCost, Renderer};
 use crate::error::Result;
 use crate::runtime::draw_list::{Blending, Frame, Picture, Show};
 use crate::runtime::order::Order;
-
-/// By which pipeline a coat is drawn, and its fins.
-type Drawn<'p> = dyn Fn(&GpuFur, bool) -> &'p wgpu::RenderPipeline + 'p;
 
 impl Prepared<'_> {
     /// What a picture costs, as a picture: red is how many fragments a pixel runs, green how many texels they read. An anisotropic sampler
@@ -31,20 +28,16 @@ impl Prepared<'_> {
         let group = self.view_group(&order.items, &targets);
         let mut encoder = gpu.encoder("cost");
         self.find_skin(&mut encoder, &targets, &group, &order.details);
-        let [drawn, costed] = [&pipelines.shells, &costs.shells].map(|shells| &shells[usize::from(show.fins)]);
-        let hashed = (blend == Blending::Hashed).then(|| self.hashed.get_or_init(|| Unsorted::hashed(gpu, pipelines)));
-        let draws = |fur: &GpuFur, fins: bool| match hashed {
-            Some(hashed) => hashed.of(fur, fins, show),
-            None if fins => &pipelines.fins,
-            None => &drawn[usize::from(fur.painted)],
+        let drawn = match blend {
+            Blending::Hashed => self.hashed.get_or_init(|| unsorted::hashed(gpu, pipelines)),
+            Blending::Sorted | Blending::Weighted => &pipelines.coat,
         };
-        let counts = |fur: &GpuFur, fins: bool| if fins { &costs.fins } else { &costed[usize::from(fur.painted)] };
         // Each piece is counted and drawn with the same depths, so that what is hidden by then counts for nothing.
         for (number, runs) in order.pieces.iter().enumerate() {
-            for (into, by) in [(&counted, &counts as &Drawn<'_>), (&targets, &draws)] {
+            for (into, by) in [(&counted, &costs.coat), (&targets, drawn)] {
                 let mut pass = into.coat_pass_before(&targets, &mut encoder, "cost", number == 0, None);
                 pass.set_bind_group(0, &group, &[]);
-                let by = |fur: &GpuFur, fins| Some(by(fur, fins));
+                let by = |fur: &GpuFur, fins| Some(by.of(fins, fur.painted, show.fins));
                 self.draw_coat(&mut pass, runs, &order.details, by, &mut PassCost::default());
             }
             if blend == Blending::Sorted {

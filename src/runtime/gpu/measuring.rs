@@ -1,6 +1,6 @@
 //! The passes that measure instead of drawing.
 
-use super::pipelines::{COLOUR, Depth, EDGE_SAMPLES, Layouts, Pass, Pipelines, SKIN_VERTICES, pipeline};
+use super::pipelines::{COLOUR, CoatPipelines, Depth, EDGE_SAMPLES, Layouts, Pass, Pipelines, SKIN_VERTICES, pipeline};
 use crate::gpu::Gpu;
 
 /// The passes that add up how much hair lies over the skin, and that find the nearest hair.
@@ -46,50 +46,30 @@ impl DepthPipelines {
 pub struct CostPipelines {
     /// Skin.
     pub skin: wgpu::RenderPipeline,
-    /// Shells: with fins to hand over to, and with textures at the roots (index 1), or without.
-    pub shells: [[wgpu::RenderPipeline; 2]; 2],
-    /// Fins.
-    pub fins: wgpu::RenderPipeline,
+    /// Shells and fins.
+    pub coat: CoatPipelines,
 }
 
 impl CostPipelines {
     /// Compiles them.
     pub fn new(gpu: &Gpu, pipelines: &Pipelines) -> Self {
-        let Layouts { view, tile, geometry, material, fin, .. } = &pipelines.layouts;
-        let [skin, shell, fins] = &pipelines.modules;
+        let Layouts { view, tile, material, .. } = &pipelines.layouts;
         let targets = [Some(added())];
-        let pass = |shader, groups: &[Option<&wgpu::BindGroupLayout>], constants: &[(&str, f64)]| {
-            let pass = Pass {
-                shader,
-                entry: "fragment",
-                groups,
-                vertices: &[],
-                constants,
-                targets: &targets,
-                depth: Some(Depth::TESTED),
-                samples: 1,
-            };
-            pipeline(gpu, &pass)
-        };
-        let measured = ("MEASURE", 4.0);
-        let shells = |with_fins: bool, painted: bool| {
-            let constants = [("WITH_FINS", f64::from(with_fins)), ("PAINTED", f64::from(painted)), measured];
-            pass(shell, &[Some(view), Some(tile), Some(geometry)], &constants)
-        };
+        let measured = [("MEASURE", 4.0)];
         let skin = Pass {
-            shader: skin,
+            shader: &pipelines.modules[0],
             entry: "fragment",
             groups: &[Some(view), Some(tile), Some(material)],
             vertices: &[Some(SKIN_VERTICES)],
-            constants: &[measured],
+            constants: &measured,
             targets: &targets,
             depth: Some(Depth::TESTED),
             samples: EDGE_SAMPLES,
         };
+        let (layouts, modules) = (&pipelines.layouts, &pipelines.modules);
         Self {
             skin: pipeline(gpu, &skin),
-            shells: [false, true].map(|fins| [false, true].map(|painted| shells(fins, painted))),
-            fins: pass(fins, &[Some(view), Some(tile), Some(geometry), Some(fin)], &[measured]),
+            coat: CoatPipelines::new(gpu, layouts, modules, "fragment", &measured, &targets, Depth::TESTED),
         }
     }
 }

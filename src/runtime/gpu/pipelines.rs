@@ -154,10 +154,8 @@ pub struct Pipelines {
     pub weighed: wgpu::RenderPipeline,
     /// What the skin's depths leave of each pixel.
     pub edges: wgpu::RenderPipeline,
-    /// Shells: test depth. With fins to hand over to, and with textures at the roots (index 1), or without.
-    pub shells: [[wgpu::RenderPipeline; 2]; 2],
-    /// Fins: test depth.
-    pub fins: wgpu::RenderPipeline,
+    /// Shells and fins from front to back: test depth.
+    pub coat: CoatPipelines,
     /// Of the skin, shells and fins.
     pub(super) modules: [wgpu::ShaderModule; 3],
     /// Samples to pixels.
@@ -199,7 +197,7 @@ impl Pipelines {
     pub fn new(gpu: &Gpu, samples: u32) -> Result<Self> {
         let layouts = Layouts::new(gpu);
         let shader = |main| gpu.shader(main, &SHARED);
-        let (skin, shell, fin) = (shader(SKIN)?, shader(SHELL)?, shader(FIN)?);
+        let modules = [shader(SKIN)?, shader(SHELL)?, shader(FIN)?];
         let (edges, full, under, resolve) = (shader(EDGES)?, shader(FULLY)?, shader(UNDER)?, shader(RESOLVE)?);
         let weighed = shader(WEIGHED)?;
         let target = |format, blend, write_mask| Some(wgpu::ColorTargetState { format, blend, write_mask });
@@ -210,7 +208,7 @@ impl Pipelines {
         let skin_vertices = [Some(SKIN_VERTICES)];
         let skin_groups = [view, tile, Some(&layouts.material)];
         let skin_pass = |targets, depth| Pass {
-            shader: &skin,
+            shader: &modules[0],
             entry: "fragment",
             groups: &skin_groups,
             vertices: &skin_vertices,
@@ -247,34 +245,7 @@ impl Pipelines {
             depth: Some(Depth { writes: false, compare: wgpu::CompareFunction::Always }),
             ..under
         };
-        let shell_groups = [view, tile, Some(&layouts.geometry)];
-        let shells = |with_fins: bool, painted: bool| {
-            let constants = [("WITH_FINS", f64::from(with_fins)), ("PAINTED", f64::from(painted))];
-            pipeline(
-                gpu,
-                &Pass {
-                    shader: &shell,
-                    entry: "fragment",
-                    groups: &shell_groups,
-                    vertices: &[],
-                    constants: &constants,
-                    targets: &behind,
-                    depth: Some(Depth::TESTED),
-                    samples: 1,
-                },
-            )
-        };
-        let fin_groups = [view, tile, Some(&layouts.geometry), Some(&layouts.fin)];
-        let fins = Pass {
-            shader: &fin,
-            entry: "fragment",
-            groups: &fin_groups,
-            vertices: &[],
-            constants: &[],
-            targets: &behind,
-            depth: Some(Depth::TESTED),
-            samples: 1,
-        };
+        let coat = CoatPipelines::new(gpu, &layouts, &modules, "fragment", &[], &behind, Depth::TESTED);
         let edge = [target(EDGE, None, wgpu::ColorWrites::ALL)];
         let edges = Pass {
             shader: &edges,
@@ -304,12 +275,52 @@ impl Pipelines {
             under: pipeline(gpu, &under),
             weighed: pipeline(gpu, &weighed),
             edges: pipeline(gpu, &edges),
-            shells: [false, true].map(|fins| [false, true].map(|painted| shells(fins, painted))),
-            fins: pipeline(gpu, &fins),
-            modules: [skin, shell, fin],
+            coat,
+            modules,
             resolve: pipeline(gpu, &resolve),
             layouts,
         })
+    }
+}
+
+/// Shells and fins, drawn in one of the ways that there are.
+pub struct CoatPipelines {
+    /// With fins to hand over to, and with textures at the roots (index 1), or without.
+    shells: [[wgpu::RenderPipeline; 2]; 2],
+    fins: wgpu::RenderPipeline,
+}
+
+impl CoatPipelines {
+    /// Compiles the shaders' functions `entry`, of the skin's, the shells' and the fins' `modules`, with these constants beside their own.
+    pub(super) fn new(
+        gpu: &Gpu,
+        layouts: &Layouts,
+        modules: &[wgpu::ShaderModule; 3],
+        entry: &str,
+        constants: &[(&str, f64)],
+        targets: &[Option<wgpu::ColorTargetState>],
+        depth: Depth,
+    ) -> Self {
+        let [_, shell, fin] = modules;
+        let (view, tile, geometry) = (Some(&layouts.view), Some(&layouts.tile), Some(&layouts.geometry));
+        let pass = |shader, groups: &[Option<&wgpu::BindGroupLayout>], own: &[(&str, f64)]| {
+            let constants = &[constants, own].concat();
+            let depth = Some(depth);
+            pipeline(gpu, &Pass { shader, entry, groups, vertices: &[], constants, targets, depth, samples: 1 })
+        };
+        let shells = |with_fins: bool, painted: bool| {
+            let own = [("WITH_FINS", f64::from(with_fins)), ("PAINTED", f64::from(painted))];
+            pass(shell, &[view, tile, geometry], &own)
+        };
+        Self {
+            shells: [false, true].map(|fins| [false, true].map(|painted| shells(fins, painted))),
+            fins: pass(fin, &[view, tile, geometry, Some(&layouts.fin)], &[]),
+        }
+    }
+
+    /// That for the fins of a coat, or its shells with or without textures at the roots, where fins are shown or not.
+    pub fn of(&self, fins: bool, painted: bool, fins_shown: bool) -> &wgpu::RenderPipeline {
+        if fins { &self.fins } else { &self.shells[usize::from(fins_shown)][usize::from(painted)] }
     }
 }
 

@@ -3,10 +3,10 @@
 use super::bindings::bind;
 use super::layout::ViewUniform;
 use super::measuring::{CostPipelines, DepthPipelines};
+use super::pipelines::CoatPipelines;
 use super::resources::{self, GpuFur, GpuSkin, Textures};
 use super::shadow_map::{GpuCasters, MAP_BYTES};
 use super::targets::Targets;
-use super::unsorted::Unsorted;
 use super::{Drawn, KeyShadow, PassCost, Renderer};
 use crate::error::{Error, Result};
 use crate::gpu::Timer;
@@ -38,8 +38,8 @@ pub struct Prepared<'a> {
     /// Made when first asked for.
     pub(super) depths: OnceCell<DepthPipelines>,
     pub(super) costs: OnceCell<CostPipelines>,
-    pub(super) weighted: OnceCell<Unsorted>,
-    pub(super) hashed: OnceCell<Unsorted>,
+    pub(super) weighted: OnceCell<CoatPipelines>,
+    pub(super) hashed: OnceCell<CoatPipelines>,
 }
 
 impl<'a> Prepared<'a> {
@@ -176,9 +176,7 @@ impl<'a> Prepared<'a> {
         show: Show,
     ) -> PassCost {
         let pipelines = &self.renderer.pipelines;
-        let shells = &pipelines.shells[usize::from(show.fins)];
-        let drawn =
-            |fur: &GpuFur, fins: bool| Some(if fins { &pipelines.fins } else { &shells[usize::from(fur.painted)] });
+        let drawn = |fur: &GpuFur, fins: bool| Some(pipelines.coat.of(fins, fur.painted, show.fins));
         let mut coat = self.coat_cost();
         for (number, runs) in order.pieces.iter().enumerate() {
             let (first, last) = (number == 0, number + 1 == order.pieces.len());
