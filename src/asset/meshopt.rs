@@ -16,6 +16,11 @@ pub fn is_fallback(buffer: &At<'_>) -> bool {
     buffer.get("extensions").and_then(|e| e.get(NAME)?.get("fallback")).is_some_and(|f| f.value == &json!(true))
 }
 
+/// Whether a buffer view is what compressed data decode to.
+pub fn is_compressed(view: &At<'_>) -> bool {
+    view.get("extensions").is_some_and(|e| e.get(NAME).is_some())
+}
+
 /// Replaces every compressed buffer view by what it decodes to and drops the extension.
 ///
 /// # Errors

@@ -159,6 +159,9 @@ impl Document {
                     .with_expected(format!("within the {length} bytes of buffers[{buffer}]"))
                     .with_hint("the file was cut or written by a faulty exporter; export it again"));
             }
+            if start == usize::MAX && !meshopt::is_compressed(&view) {
+                return Err(view.need("buffer")?.fault("a buffer with data: nothing decodes to this view"));
+            }
             moved.push((buffer > 0 && start != usize::MAX).then(|| start + offset));
         }
         Ok(moved)

@@ -143,11 +143,11 @@ fn glb() {
     try_all("glb", 300);
 }
 
-/// Cases that ended badly once: joints and nodes of no size or beyond all numbers, and an animation without channels, to which a coat added
-/// null.
+/// Cases that ended badly once: joints and nodes of no size or beyond all numbers, an animation without channels, to which a coat added
+/// null, and views of a buffer without data that nothing decodes to.
 #[test]
 fn cases_of_glb_that_were_faults() {
-    for case in [513, 2425, 3411, 4726, 5532, 5601] {
+    for case in [513, 2425, 3411, 4726, 5532, 5601, 6295, 6628, 7546, 9131] {
         let ended = run("glb", case, 1, LONGEST);
         assert_eq!((ended.tried, ended.fault), (1, None), "case {case}");
     }
