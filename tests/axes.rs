@@ -65,6 +65,7 @@ fn request(input: &Path, reading: Reading, out: &Path) -> Request {
         fallback: Fallback::None,
         judge: false,
         cache: None,
+        draft: false,
     }
 }
 

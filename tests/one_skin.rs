@@ -40,6 +40,7 @@ pub fn baked(input: &Path, out: &Path, preset: &Preset, method: Method) -> (Asse
         fallback: Fallback::Shells(2),
         judge: false,
         cache: None,
+        draft: false,
     };
     bake(&request, &mut |_| ()).unwrap_or_else(|e| panic!("{}: {e}", input.display()));
     asset::read_coat(out).unwrap()

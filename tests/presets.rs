@@ -183,6 +183,7 @@ fn a_whorl_turns_hair_where_it_says_and_one_that_misses_is_told() {
             fallback: Fallback::None,
             judge: false,
             cache: None,
+            draft: false,
         };
         bake(&request, &mut |_| {}).unwrap()
     };

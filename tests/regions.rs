@@ -55,6 +55,7 @@ fn baked_as(input: &Path, folder: &Path, own: &str, fallback: Fallback) -> (asse
         fallback,
         judge: false,
         cache: None,
+        draft: false,
     };
     bake(&request, &mut |_| ()).unwrap();
     asset::read_coat(&out).unwrap()

@@ -9,14 +9,15 @@ use furrier::fur::groom::fibre::Fibre;
 use furrier::fur::groom::{Colour, Guard, Length, Shape, Undercoat};
 use furrier::fur::grow::skin;
 use furrier::math::{DVec3, Vec3};
-use furrier::shade::fibre::Fibres;
+use furrier::shade::fibre::{Fibres, Film};
 use furrier::stage::projection::Projection;
 use furrier::volume::scene::{HairScattering, Lighting, Scene};
 use std::sync::LazyLock;
 
 /// Both kinds of hair of the default fibre.
 pub fn scattering() -> &'static HairScattering {
-    static DEFAULT: LazyLock<HairScattering> = LazyLock::new(|| HairScattering::new(&Fibres::default()).unwrap());
+    static DEFAULT: LazyLock<HairScattering> =
+        LazyLock::new(|| HairScattering::new(&Fibres::default(), &Film::default()).unwrap());
     &DEFAULT
 }
 

@@ -53,6 +53,7 @@ fn request(preset: Preset, out: &std::path::Path) -> Request {
         fallback: Fallback::None,
         judge: false,
         cache: None,
+        draft: false,
     }
 }
 

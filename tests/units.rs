@@ -242,6 +242,7 @@ fn baked(input: &Path, materials: &[&str], preset: &str) -> (Asset, Baked) {
         fallback: Fallback::None,
         judge: false,
         cache: None,
+        draft: false,
     };
     let baked = bake(&request, &mut |_| {}).unwrap();
     (asset::load(&request.input).unwrap(), baked)

@@ -27,7 +27,7 @@ pub(super) fn coat_parts(task: &Task<'_>, texels: Option<u32>, steps: &mut Steps
             .with_hint("use `parameterisation` lapped or uv"));
     }
     let fibres = task.fibres(task.preset);
-    let recipe = recipe(task.preset, [&fibres[0], &fibres[1]])?;
+    let recipe = recipe(task, task.preset, steps)?;
     let texels = texels.unwrap_or_else(|| (TEXELS.0 * recipe.shells.texture_size).min(TEXELS.1));
     let tile_m = recipe.shells.tile_mm * 1e-3;
     let all = task.groom(task.preset, steps)?;

@@ -91,6 +91,9 @@ pub struct Request {
     pub judge: bool,
     /// Where stages are kept from one bake to the next; none to do all of it. The result is the same.
     pub cache: Option<Store>,
+    /// Whether it is to look at until a better one is there: fibres that are not known are not solved
+    /// ([`HairScattering::draft`](crate::volume::scene::HairScattering::draft)).
+    pub draft: bool,
 }
 
 /// What was baked.
@@ -167,6 +170,9 @@ fn done(mut baked: Baked, steps: Steps<'_>) -> Baked {
 
 /// Reads the input and grows its coat; `check` sees the asset before the long work.
 fn dress(request: &Request, steps: &mut Steps<'_>, check: &dyn Fn(&Asset) -> Result<()>) -> Result<(Asset, Baked)> {
+    let wetted = |(material, preset): &(String, Preset)| (material.clone(), preset.wetted());
+    let presets = request.presets.iter().map(wetted).collect();
+    let request = &Request { preset: request.preset.wetted(), presets, ..request.clone() };
     for preset in std::iter::once(&request.preset).chain(request.presets.iter().map(|(_, preset)| preset)) {
         regions::check_files(preset)?;
     }

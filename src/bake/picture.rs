@@ -90,7 +90,7 @@ impl Grown {
         let asset = asset::load_as(&request.input, &request.reading)?;
         let selection = asset::select(&asset.parts, &request.materials)?;
         let chosen = selection.parts;
-        let preset = &request.preset;
+        let preset = &request.preset.wetted();
         let scale = units::scale(request.units, preset, &asset, &chosen, request.input.starts_with("sample:"))?;
         let mut notes = asset.warnings.clone();
         notes.extend(selection.note);
@@ -131,7 +131,7 @@ impl Grown {
         Ok(Self {
             guard: (strands, fibre),
             undercoat,
-            scattering: HairScattering::new(&preset.fibre)?,
+            scattering: HairScattering::new(&preset.fibre, &preset.wet.film())?,
             skin_factor: Vec3::from(preset.colour.skin),
             only: request.only,
             metres_per_unit: scale.metres_per_unit,

@@ -137,6 +137,8 @@ pub struct Recipe {
     /// Whether coarser levels of detail are furred too.
     #[serde(default)]
     pub lods: bool,
+    /// See [`Request::draft`].
+    pub draft: bool,
 }
 
 impl Choices {
@@ -188,6 +190,7 @@ impl Choices {
             fallback: self.fallback.unwrap_or(self.target.fallback()),
             upright: Upright::of(self.up, self.forward)?,
             lods: self.lods,
+            draft: false,
         })
     }
 
@@ -230,6 +233,7 @@ impl Recipe {
             fallback: self.fallback,
             judge,
             cache: None,
+            draft: self.draft,
         }
     }
 }

@@ -35,7 +35,7 @@ pub(super) fn presets(preset: &Preset) -> Result<Vec<Preset>> {
                 .with_expected("a preset without regions"));
         }
         (other.shells.layers, other.shells.texture_size) = (preset.shells.layers, preset.shells.texture_size);
-        other.checked()
+        Ok(other.checked()?.wetted())
     };
     preset.regions.iter().map(load).collect()
 }

@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::fur::groom::fibre::Fibre;
 use crate::math::Vec3;
 use crate::preset::Preset;
+use crate::shade::law::known;
 use crate::volume::scene::{HairScattering, crowding};
 use std::cell::OnceCell;
 
@@ -17,8 +18,9 @@ use std::cell::OnceCell;
 const EFFORT: Effort = Effort { pixels: 32, supersampling: 2 };
 
 /// What is baked of hair of a preset's two kinds.
-pub(super) fn recipe(preset: &Preset, fibres: [&Fibre; 2]) -> Result<TileRecipe> {
-    let scattering = HairScattering::new(&preset.fibre)?;
+pub(super) fn recipe(task: &Task<'_>, preset: &Preset, steps: &mut Steps<'_>) -> Result<TileRecipe> {
+    let scattering = scattering(preset, task.request.draft, steps)?;
+    let fibres = task.fibres(preset);
     Ok(TileRecipe {
         preset: preset.name.clone(),
         shells: preset.shells,
@@ -27,10 +29,26 @@ pub(super) fn recipe(preset: &Preset, fibres: [&Fibre; 2]) -> Result<TileRecipe>
         lean_deg: preset.groom.lean_deg,
         looks: Some(TileLooks {
             of: [scattering.guard.packed(), scattering.undercoat.packed()],
-            crowding: fibres.map(crowding),
+            crowding: fibres.each_ref().map(crowding),
             undercoat_share: Vec::new(),
         }),
     })
+}
+
+/// How hair of a preset scatters light. A fibre that does not come with the program is solved once, and kept.
+fn scattering(preset: &Preset, draft: bool, steps: &mut Steps<'_>) -> Result<HairScattering> {
+    let (fibres, film) = (&preset.fibre, preset.wet.film());
+    if draft {
+        return HairScattering::draft(fibres, &film);
+    }
+    for parameters in [&fibres.guard, &fibres.undercoat] {
+        if known::find(fibres.model, parameters)?.is_none() {
+            let solve = || known::scattering(fibres.model, parameters);
+            let solved = steps.kept("fibre", &(fibres.model, parameters), |steps| steps.run("fibre", solve))?;
+            known::learn(fibres.model, parameters, solved)?;
+        }
+    }
+    HairScattering::new(fibres, &film)
 }
 
 /// Hair of both kinds on a tile, grown when something first needs it.
@@ -56,7 +74,7 @@ pub(super) fn tile_of(
     steps: &mut Steps<'_>,
 ) -> Result<(Tile, Option<Vec<CoverageRow>>)> {
     let (fibres, seed) = (task.fibres(preset), task.request.seed);
-    let recipe = recipe(preset, [&fibres[0], &fibres[1]])?;
+    let recipe = recipe(task, preset, steps)?;
     let hair = Hair { fibres, edge_m: recipe.shells.tile_mm * 1e-3, seed, grown: OnceCell::new() };
     let made_from = (&fibres, seed, &recipe);
     let tile = steps.kept("tile", &made_from, |steps| Ok(baked(&hair, &recipe, steps)))?;

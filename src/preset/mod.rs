@@ -3,6 +3,7 @@
 pub mod keys;
 mod path;
 mod settings;
+mod wet;
 
 use crate::coat::fins::FinParameters;
 use crate::coat::shells::ShellParameters;
@@ -12,6 +13,8 @@ use crate::shade::fibre::Fibres;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+
+pub use wet::Wet;
 
 /// Images over the mesh's first UV set, named relative to the preset's file; each multiplies or replaces a field.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -89,6 +92,8 @@ pub struct Preset {
     pub colour: Colour,
     /// What hairs are made of, and so how they scatter light.
     pub fibre: Fibres,
+    /// Water in it.
+    pub wet: Wet,
     /// Groom maps.
     pub maps: Maps,
     /// Shell textures.

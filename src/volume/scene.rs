@@ -9,7 +9,7 @@ use crate::fur::groom::fibre::{Fibre, LENGTH_SPREAD};
 use crate::math::Vec3;
 use crate::math::lanes::{F32s, Isa, Vec3s};
 use crate::math::table::Table;
-use crate::shade::fibre::Fibres;
+use crate::shade::fibre::{FibreModel, FibreParameters, Fibres, Film};
 use crate::shade::law::known::{self, Scattering};
 use crate::stage::light::Lit;
 use std::sync::LazyLock;
@@ -47,12 +47,29 @@ impl HairScattering {
         &NONE
     }
 
-    /// Of a preset's fibres; those that do not come with the program are solved.
+    /// Of a preset's fibres under a film of water; those that do not come with the program are solved.
     ///
     /// # Errors
     /// As [`known::scattering`].
-    pub fn new(fibres: &Fibres) -> Result<Self> {
-        let of = |parameters| known::scattering(fibres.model, parameters);
+    pub fn new(fibres: &Fibres, film: &Film) -> Result<Self> {
+        Self::each(fibres, film, known::scattering)
+    }
+
+    /// The same at once, for pictures that a better one follows: where a fibre does not come with the program, only what is scattered once
+    /// is its own; the rest is that of the nearest fibre which does.
+    ///
+    /// # Errors
+    /// As [`known::nearest`].
+    pub fn draft(fibres: &Fibres, film: &Film) -> Result<Self> {
+        Self::each(fibres, film, known::nearest)
+    }
+
+    fn each(
+        fibres: &Fibres,
+        film: &Film,
+        find: fn(FibreModel, &FibreParameters) -> Result<Scattering>,
+    ) -> Result<Self> {
+        let of = |dry| find(fibres.model, dry).map(|found| found.wet(film, fibres.model, dry));
         Ok(Self { guard: of(&fibres.guard)?, undercoat: of(&fibres.undercoat)? })
     }
 }

@@ -37,6 +37,15 @@ pub struct Typed {
     pub file: String,
 }
 
+/// How wet the fur is, which is a key of the preset like others, at hand.
+pub fn wetness(ui: &mut Ui, edits: &Edits) -> Vec<Wanted> {
+    let mut amount = edits.recipe().preset.wet.amount;
+    let response = ui.add(Slider::new(&mut amount, 0.0..=1.0).text("wetness").fixed_decimals(2));
+    let set = response.changed().then(|| Wanted::Set("wet.amount".to_owned(), float(f64::from(amount))));
+    let let_go = (response.drag_stopped() || response.lost_focus()).then_some(Wanted::LetGo);
+    set.into_iter().chain(let_go).collect()
+}
+
 /// Draws the panel; what was wanted is returned.
 pub fn show(ui: &mut Ui, edits: &Edits, typed: &mut Typed) -> Vec<Wanted> {
     let mut wanted = Vec::new();

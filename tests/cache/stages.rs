@@ -40,6 +40,7 @@ fn request(input: &str, preset: Preset) -> Request {
         fallback: Fallback::Shells(2),
         judge: false,
         cache: None,
+        draft: false,
     }
 }
 

@@ -98,6 +98,7 @@ pub fn request(input: &Path, out: &Path) -> Request {
         fallback: Fallback::Shells(2),
         judge: false,
         cache: None,
+        draft: false,
         reading: Reading::default(),
     }
 }

@@ -216,6 +216,7 @@ fn baked(input: &Path, out: &Path) -> furrier::Result<()> {
         fallback: Fallback::Shells(2),
         judge: false,
         cache: None,
+        draft: false,
     };
     bake(&request, &mut |_| {}).map(drop)
 }

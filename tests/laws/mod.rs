@@ -4,3 +4,4 @@ pub mod colour;
 pub mod fibre;
 pub mod shading;
 pub mod way;
+pub mod wet;

@@ -319,6 +319,7 @@ pub fn baked(input: &str) -> Vec<u8> {
         fallback: Fallback::Shells(2),
         judge: false,
         cache: None,
+        draft: false,
     };
     bake(&request, &mut |_| ()).expect("it bakes");
     std::fs::read(out).expect("the output")

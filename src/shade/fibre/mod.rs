@@ -10,11 +10,13 @@
 
 mod azimuth;
 mod build;
+mod film;
 pub mod parameters;
 pub mod sample;
 mod scale;
 mod simulate;
 
+pub use film::Film;
 pub use parameters::{FibreModel, FibreParameters, Fibres};
 
 use super::{Angles, Real};

@@ -10,6 +10,7 @@ pub mod light;
 pub mod polynomial;
 pub mod slab;
 pub mod solve;
+mod wet;
 
 pub use colour::{Colouring, Worn};
 pub use known::Scattering;

@@ -71,20 +71,20 @@ fn coarse(recipe: &Recipe) -> Recipe {
         let shells = &mut preset.shells;
         (shells.texture_size, shells.layers) = (shells.texture_size.min(COARSE[0]), shells.layers.min(COARSE[1]));
     }
-    Recipe { fallback: Fallback::None, ..recipe }
+    Recipe { fallback: Fallback::None, draft: true, ..recipe }
 }
 
 impl App {
     /// The panel's part about the preset.
     pub(super) fn parameters(&mut self, ui: &mut Ui) {
         let Some(edits) = &self.edits else { return };
-        let mut wanted = Vec::new();
+        let mut wanted = parameters::wetness(ui, edits);
         egui::CollapsingHeader::new("Preset").default_open(false).show(ui, |ui| {
             if let [Some(coarse), last] = self.baking.took_ms {
                 let last = last.map_or("…".to_owned(), |ms| format!("{ms:.0} ms"));
                 ui.weak(format!("from a change to its coarse coat {coarse:.0} ms, to its final one {last}"));
             }
-            wanted = parameters::show(ui, edits, &mut self.typed);
+            wanted.extend(parameters::show(ui, edits, &mut self.typed));
         });
         for wanted in wanted {
             if let Err(error) = self.change(wanted) {
