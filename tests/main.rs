@@ -18,6 +18,7 @@ mod cli;
 mod coat_file;
 mod coat_light;
 mod coats;
+mod combing;
 mod common;
 mod crossing;
 mod defocus;

@@ -36,13 +36,13 @@ fn dressed(asset: &Asset, tile: Tile) -> Coat {
     coat
 }
 
-fn creature() -> (Asset, Coat) {
+pub fn creature() -> (Asset, Coat) {
     let asset = asset::load("sample:creature").unwrap();
     let coat = dressed(&asset, coats::tile(&coats::fox()[..1], 0.008, 4, 32, 1));
     (asset, coat)
 }
 
-fn small() -> ViewOptions {
+pub fn small() -> ViewOptions {
     staged([96, 72], Viewpoint::default())
 }
 

@@ -10,7 +10,7 @@ use crate::bake::seen::seen;
 use crate::data::coat::Coat;
 use crate::error::{Error, Result};
 use crate::gpu::Choice;
-use crate::runtime::Blending;
+use crate::runtime::{Blending, Combing};
 use crate::stage::file::Format;
 use crate::viewer::{self, ViewOptions};
 use clap::{Args, ValueEnum};
@@ -63,6 +63,12 @@ pub struct View {
     /// chance, a grainy picture of those that a game averages over time
     #[arg(long, value_enum, default_value_t)]
     blend: BlendBy,
+    /// Make all hair so many times as long, 0.1 to 4, without baking it anew
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    lengthen: f32,
+    /// Make all hair lean so much more the way it leans, -75 to 75 degrees, without baking it anew
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true)]
+    slant: f32,
     /// Play this animation, by name or number
     #[arg(long, value_name = "NAME")]
     animation: Option<String>,
@@ -180,7 +186,7 @@ impl View {
                 .with_parameter("occluder")
                 .with_hint("`--screenshot OUT.png` shows things beside it"));
         }
-        let ViewOptions { device, stage, show, moment, shadow_map, level, .. } = self.options()?;
+        let ViewOptions { device, stage, show, moment, shadow_map, level, combing, .. } = self.options()?;
         let subject = loading::Subject {
             input: self.file.clone(),
             reading: self.recipe.reading()?,
@@ -193,6 +199,7 @@ impl View {
             stage,
             shown: show,
             level,
+            combing,
             moment,
             shadow: shadow_map,
             device,
@@ -226,6 +233,7 @@ impl View {
             moment: self.animation.clone().map(|name| (name, self.time.unwrap_or(0.0))),
             level: self.level,
             blend: self.blend.into(),
+            combing: Combing::new(self.lengthen, self.slant)?,
             shadow_map: !self.no_shadow,
             occluder: self.occluder.as_deref().map(|file| asset::load_as(file, &reading)).transpose()?,
             ..ViewOptions::default()

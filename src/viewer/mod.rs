@@ -19,7 +19,7 @@ use crate::gpu::{Choice, Gpu};
 use crate::math::{DVec3, Vec3};
 use crate::metrics::timing::{Recorder, Report};
 use crate::runtime::gpu::{KeyShadow, Prepared, Renderer};
-use crate::runtime::{Blending, Frame, Picture, Show};
+use crate::runtime::{Blending, Combing, Frame, Picture, Show};
 use crate::stage::camera::{Orbit, Viewpoint};
 use crate::stage::file::Format;
 use crate::stage::light::Lit;
@@ -52,6 +52,8 @@ pub struct ViewOptions {
     pub level: Option<usize>,
     /// How shells and fins come together in a pixel.
     pub blend: Blending,
+    /// How the coat is combed anew.
+    pub combing: Combing,
     /// A thing beside the asset, in its units and axes. It is no part of what the camera is framed for.
     pub occluder: Option<Asset>,
 }
@@ -69,6 +71,7 @@ impl Default for ViewOptions {
             level: None,
             count: false,
             blend: Blending::Sorted,
+            combing: Combing::default(),
             occluder: None,
         }
     }
@@ -246,6 +249,7 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
         Shown::Chart(chart) => drawing(chart),
     };
     let (mut scene, show, legend) = recorder.step("pose", staged, |_| 0)?;
+    options.combing.comb(&mut scene);
     let charted = matches!(options.show, Shown::Chart(_));
     let subject = subject(asset, coat)?;
     let origin_m = subject.origin_m;

@@ -8,7 +8,7 @@ use crate::error::{Error, Kind, Result};
 use crate::gpu::{Choice, Gpu};
 use crate::math::{DVec3, Vec3};
 use crate::runtime::gpu::{Drawn, KeyShadow, PassCost, Prepared, Renderer};
-use crate::runtime::{Blending, Frame, Motion, Picture, Show, Spring, Wind};
+use crate::runtime::{Blending, Combing, Frame, Motion, Picture, Show, Spring, Wind, step_texels};
 use crate::stage::light::Lit;
 use crate::viewer::bald::{self, Baldness};
 use crate::viewer::chart::{self, Chart};
@@ -73,6 +73,8 @@ pub struct Statistics {
     pub height_px: f32,
     /// Texels read for each pixel that shows anything; none where it was not counted.
     pub reads: Option<f64>,
+    /// As [`step_texels`].
+    pub step_texels: f32,
     /// Whether the key light's shadow is missing, as it stands too near.
     pub no_shadow: bool,
     /// What colours mean, one sentence each.
@@ -110,12 +112,12 @@ fn serve(gpu: &Gpu, orders: &Receiver<Order>, answer: &dyn Fn(Result<Answer>)) {
 }
 
 /// What of an order the geometry hangs on.
-fn staging(order: &Order) -> (Option<Moment>, Option<Chart>, bool) {
+fn staging(order: &Order) -> (Option<Moment>, Combing, Option<Chart>, bool) {
     let chart = match order.look.shown {
         Shown::Chart(chart) => Some(chart),
         _ => None,
     };
-    (order.look.moment, chart, order.look.shown == Shown::Bald)
+    (order.look.moment, order.look.combing, chart, order.look.shown == Shown::Bald)
 }
 
 /// Draws one model until another is wanted, which is returned.
@@ -142,6 +144,8 @@ fn draw_model(
             }
             _ => (stage::scene(&model.asset, &model.coat, &model.textures, &pose), Vec::new()),
         };
+        order.look.combing.comb(&mut scene);
+        let step_texels = step_texels(&scene);
         match &order.sway {
             Some(Sway { spring, wind, at }) => {
                 let elapsed_s = last.map_or(0.0, |last| at.saturating_duration_since(last).as_secs_f32());
@@ -155,7 +159,14 @@ fn draw_model(
             _ => None,
         };
         let points_m = stage::points_m(&scene);
-        let mut easel = Easel { renderer: &renderer, prepared: renderer.prepare(&scene)?, over_skin, points_m, legend };
+        let mut easel = Easel {
+            renderer: &renderer,
+            prepared: renderer.prepare(&scene)?,
+            over_skin,
+            points_m,
+            legend,
+            step_texels,
+        };
         loop {
             answer(easel.draw(&order, gpu));
             match orders.take() {
@@ -178,6 +189,7 @@ struct Easel<'a> {
     over_skin: Option<Prepared<'a>>,
     points_m: Vec<Vec3>,
     legend: Vec<String>,
+    step_texels: f32,
 }
 
 impl Easel<'_> {
@@ -231,6 +243,7 @@ impl Easel<'_> {
             level,
             height_px: height_px * coarse as f32,
             reads,
+            step_texels: self.step_texels,
             no_shadow: shadow == KeyShadow::TooNear,
             legend,
             device: gpu.adapter.to_string(),

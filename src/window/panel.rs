@@ -6,7 +6,7 @@ use super::lighting::Source;
 use super::model::Model;
 use super::state::State;
 use crate::math::Vec3;
-use crate::runtime::Spring;
+use crate::runtime::{Combing, OUT_OF_LINE, Spring};
 use crate::stage::background::Background;
 use crate::stage::rig::Rig;
 use crate::stage::tone::Tone;
@@ -28,6 +28,7 @@ pub fn show(ui: &mut Ui, state: &mut State, model: Option<&Model>, statistics: O
     if let Some(model) = model.filter(|model| !model.animations.is_empty()) {
         section("Animation", true).show(ui, |ui| animation(ui, state, model));
     }
+    section("Comb", false).show(ui, |ui| comb(ui, state, statistics));
     section("Motion", false).show(ui, |ui| motion(ui, state));
     section("Statistics", false).show(ui, |ui| numbers(ui, state, model, statistics));
 }
@@ -137,6 +138,19 @@ fn animation(ui: &mut Ui, state: &mut State, model: &Model) {
     if ui.add(scrub).changed() {
         clock.playing = false;
     }
+}
+
+/// Length and slant of the coat as it is: the preset's own are baked anew.
+fn comb(ui: &mut Ui, state: &mut State, statistics: Option<&Statistics>) {
+    let combing = &mut state.combing;
+    ui.add(Slider::new(&mut combing.length, 0.1..=4.0).text("length").logarithmic(true).fixed_decimals(2));
+    ui.add(Slider::new(&mut combing.slant_deg, -75.0..=75.0).text("slant").suffix("°").fixed_decimals(0));
+    if *combing != Combing::default() && ui.button("as baked").clicked() {
+        *combing = Combing::default();
+    }
+    let Some(step) = statistics.map(|statistics| statistics.step_texels) else { return };
+    let lines_up = if step > OUT_OF_LINE { "layers no longer line up" } else { "layers line up" };
+    ui.weak(format!("{lines_up}: {step:.1} texels along the skin from one to the next"));
 }
 
 fn motion(ui: &mut Ui, state: &mut State) {

@@ -51,6 +51,8 @@ pub fn set(state: &mut State, model: Option<&Model>, aspect: f64, name: &str, va
         }
         "wipe" => state.comparison.wipe = number(0.0, 1.0)? as f32,
         "hair" => state.comparison.hair = is_on()?,
+        "length" => state.combing.length = number(0.1, 4.0)? as f32,
+        "slant" => state.combing.slant_deg = number(-75.0, 75.0)? as f32,
         "sway" => state.spring = is_on()?.then(Spring::default),
         "wind" => state.wind.speed_m_per_s = number(0.0, 30.0)? as f32,
         "wind.gusts" => state.wind.gusts = number(0.0, 1.0)? as f32,
@@ -64,7 +66,7 @@ pub fn set(state: &mut State, model: Option<&Model>, aspect: f64, name: &str, va
         _ => {
             return Err(Error::usage("there is no such control").with_field(name).with_expected(
                 "exposure, background, light, light.turn, light.raise, light.stops, light.shadow, sky, show, level, \
-                 animation, time, speed, play, against, wipe, hair, sway, wind, wind.gusts, panel, help, orbit, or preset.KEY",
+                 animation, time, speed, play, against, wipe, hair, length, slant, sway, wind, wind.gusts, panel, help, orbit, or preset.KEY",
             ));
         }
     }

@@ -5,7 +5,7 @@ use super::eye::Eye;
 use super::lighting::Lighting;
 use super::look::{Look, Moment};
 use super::model::{Animation, Model};
-use crate::runtime::{Spring, Wind};
+use crate::runtime::{Combing, Spring, Wind};
 use crate::stage::tone::Development;
 use crate::viewer::Shown;
 
@@ -25,6 +25,8 @@ pub struct State {
     pub clock: Clock,
     /// The coat against its hair.
     pub comparison: Comparison,
+    /// How the coat is combed anew.
+    pub combing: Combing,
     /// What moves hair.
     pub wind: Wind,
     /// How it swings; none where it follows the skin alone.
@@ -54,6 +56,7 @@ impl State {
             development: self.development,
             shown: self.shown,
             level: self.level,
+            combing: self.combing,
             moment: self.clock.moment(),
         }
     }

@@ -3,6 +3,7 @@
 use super::{App, QUIET, Word};
 use crate::data::image::Image8;
 use crate::error::Result;
+use crate::runtime::Combing;
 use crate::window::canvas;
 use crate::window::comparison::{self, Judged, Mode};
 use crate::window::look::Look;
@@ -65,6 +66,11 @@ impl App {
                 Some("a file with a coat does not hold its hair: open the mesh with a preset".to_owned());
             return;
         };
+        if self.state.combing != Combing::default() {
+            self.hair.why_not =
+                Some("the hair is not combed anew with the coat: set length to 1 and slant to 0".to_owned());
+            return;
+        }
         self.hair.why_not = None;
         let still = self.changed.elapsed() >= QUIET && !self.state.clock.playing && !self.baking.due();
         let look = self.look(size);

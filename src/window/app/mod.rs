@@ -134,6 +134,7 @@ impl App {
                 level: begin.level,
                 clock: Clock::default(),
                 comparison: Comparison::default(),
+                combing: begin.combing,
                 wind: Wind::default(),
                 spring: None,
                 open: Open { panel: true, help: false, counting: false },
