@@ -22,6 +22,7 @@ pub fn recipe(lean_deg: f32) -> TileRecipe {
         skin: Vec3::splat(0.5),
         lean_deg,
         looks: None,
+        draft: false,
     }
 }
 

@@ -61,6 +61,7 @@ impl Ball {
             skin: Vec3::splat(0.5),
             lean_deg: 30.0,
             looks: None,
+            draft: false,
         }
     }
 

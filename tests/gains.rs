@@ -47,6 +47,7 @@ pub fn tile_and_truth() -> (Tile, [f64; 4]) {
         skin: Vec3::splat(0.5),
         lean_deg: 0.0,
         looks: None,
+        draft: false,
     };
     let caster = Caster::new(hair.scene());
     let (edge_m, top_m) = (hair.edge_m, hair.height_m);

@@ -55,6 +55,7 @@ fn small_tile(preset: &furrier::preset::Preset) -> furrier::data::coat::Tile {
         skin: Vec3::from(preset.colour.skin),
         lean_deg: preset.groom.lean_deg,
         looks: None,
+        draft: false,
     };
     furrier::coat::tile::bake(&hair, &recipe)
 }

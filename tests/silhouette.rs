@@ -124,6 +124,7 @@ fn measured(camera: &Camera, fibres: [&Fibre; 2], lean_rad: f32, fins: &[Fins]) 
         skin: Vec3::splat(0.5),
         lean_deg: lean_rad.to_degrees(),
         looks: None,
+        draft: false,
     };
     let tiles = [bake(&hair, &recipe)];
     let height_m = tiles[0].height_m;

@@ -9,6 +9,7 @@ mod finest;
 pub mod picture;
 pub mod recipe;
 mod regions;
+mod request;
 pub mod seen;
 mod sets;
 mod skin;
@@ -20,9 +21,8 @@ pub mod units;
 mod wear;
 mod weld;
 
-use crate::asset::coat::{Fallback, Packed, check_output, refuse_second, write_packed};
-use crate::asset::{self, Asset, Part, Reading};
-use crate::cache::Store;
+use crate::asset::coat::{Packed, check_output, refuse_second, write_packed};
+use crate::asset::{self, Asset, Part};
 use crate::coat::axes::axes;
 use crate::coat::judge::CoverageRow;
 use crate::coat::measures::Measures;
@@ -31,106 +31,23 @@ use crate::coat::summary::draw_calls_note;
 use crate::data::coat::{Blend, Coat, CoatPrimitive, Tile};
 use crate::data::mesh::Mesh;
 use crate::error::{Error, Result};
-use crate::fur::field::{FieldSource, Singularity, directions};
+use crate::fur::field::{FieldSource, directions};
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::patch::{Parameterisation, need_uv_set, parameterise};
 use crate::metrics::timing;
 use crate::preset::Preset;
-use serde::{Deserialize, Serialize};
 use skin::{Groomed, Role};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 use steps::Steps;
 use textures::Textures;
 use tiles::tile_of;
 use unfollowed::variants;
-use units::{Scale, Units};
+use units::Scale;
 use weld::Skin;
 
+pub use request::{Baked, Laid, Method, Request};
 pub use steps::{Cached, Uses};
-
-/// How to choose texture coordinates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Method {
-    /// Lapped patches.
-    Lapped,
-    /// Charts with texels of their own, hair sampled on the skin.
-    Atlas {
-        /// Texels along the edge of the square that holds them; none for four times the preset's tile.
-        texels: Option<u32>,
-    },
-    /// The asset's own set.
-    Uv(usize),
-}
-
-/// What to bake.
-#[derive(Clone, Debug)]
-pub struct Request {
-    /// A file, or `sample:NAME`.
-    pub input: String,
-    /// How it is read.
-    pub reading: Reading,
-    /// Where the result goes.
-    pub out: PathBuf,
-    /// Preset of all materials without one of their own.
-    pub preset: Preset,
-    /// Presets of single materials, by name.
-    pub presets: Vec<(String, Preset)>,
-    /// Materials to fur; empty for all that are not by name bare.
-    pub materials: Vec<String>,
-    /// What a unit of the file means.
-    pub units: Units,
-    /// Texture coordinates.
-    pub method: Method,
-    /// Decides all that is random.
-    pub seed: u64,
-    /// What viewers without the extension see.
-    pub fallback: Fallback,
-    /// Whether to measure the result against its strands.
-    pub judge: bool,
-    /// Where stages are kept from one bake to the next; none to do all of it. The result is the same.
-    pub cache: Option<Store>,
-    /// Whether it is to look at until a better one is there: fibres that are not known are not solved
-    /// ([`HairScattering::draft`](crate::volume::scene::HairScattering::draft)).
-    pub draft: bool,
-}
-
-/// What was baked.
-#[derive(Clone, Debug)]
-pub struct Baked {
-    /// The coat.
-    pub coat: Coat,
-    /// What was decided for the user, one sentence each.
-    pub notes: Vec<String>,
-    /// What may not be as the user expects, one sentence each.
-    pub warnings: Vec<String>,
-    /// Materials that got fur.
-    pub materials: Vec<String>,
-    /// Bounding diagonal of what is furred, which lengths refer to, m.
-    pub diagonal_m: f64,
-    /// Comb and parameterisation of what was laid out together.
-    pub laid: Vec<Laid>,
-    /// Coverage of each tile against its strands, when asked for.
-    pub accuracy: Vec<Vec<CoverageRow>>,
-    /// Time per step, in order; a step whose result came from the cache is not among them.
-    pub steps: timing::Steps,
-    /// What came from the cache; none where there is none.
-    pub cached: Option<Cached>,
-}
-
-/// How hair lies on the parts that were laid out together.
-#[derive(Clone, Debug)]
-pub struct Laid {
-    /// Their materials, with commas between.
-    pub material: String,
-    /// Where its comb has no direction.
-    pub singularities: Vec<Singularity>,
-    /// How well the texture lies; its seams where the bake is judged.
-    pub measures: Measures,
-    /// Wall time of laying it out, ms.
-    pub ms: f64,
-}
 
 /// Bakes and writes. `tell` hears the name of each step as it begins.
 ///
@@ -139,10 +56,11 @@ pub struct Laid {
 pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Baked> {
     let mut steps = Steps::new(tell, request.cache.clone());
     check_output(&request.out, &[])?;
-    let (asset, mut baked) = dress(request, &mut steps, &|asset| {
-        refuse_own_input(&request.input, &request.out)?;
-        check_output(&request.out, &asset.document.files).map(drop)
-    })?;
+    let asset = read(request, &mut steps)?;
+    // Before the long work.
+    refuse_own_input(&request.input, &request.out)?;
+    check_output(&request.out, &asset.document.files)?;
+    let (asset, mut baked) = dress(asset, request, &mut steps)?;
     let pack = |tile: &Tile| steps.kept("textures", tile, |steps| steps.run("textures", || Packed::new(tile)));
     let textures = baked.coat.tiles.iter().map(pack).collect::<Result<Vec<_>>>()?;
     let write = || write_packed(&asset, &baked.coat, &textures, request.fallback, &request.out);
@@ -157,8 +75,35 @@ pub fn bake(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<Bak
 /// When the input cannot be used or names something that is not there.
 pub fn coat(request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<(Asset, Baked)> {
     let mut steps = Steps::new(tell, request.cache.clone());
-    let (asset, baked) = dress(request, &mut steps, &|_| Ok(()))?;
+    let asset = read(request, &mut steps)?;
+    let (asset, baked) = dress(asset, request, &mut steps)?;
     Ok((asset, done(baked, steps)))
+}
+
+/// The same for an asset that was read as the request says, and wears nothing.
+///
+/// # Errors
+/// As [`coat`].
+pub fn coat_of(asset: Asset, request: &Request, tell: &mut dyn FnMut(&'static str)) -> Result<(Asset, Baked)> {
+    check_files(request)?;
+    let mut steps = Steps::new(tell, request.cache.clone());
+    let (asset, baked) = dress(asset, request, &mut steps)?;
+    Ok((asset, done(baked, steps)))
+}
+
+/// Whether the files are there that presets name.
+fn check_files(request: &Request) -> Result<()> {
+    std::iter::once(&request.preset)
+        .chain(request.presets.iter().map(|(_, preset)| preset))
+        .try_for_each(regions::check_files)
+}
+
+/// The input, which must not wear a coat.
+fn read(request: &Request, steps: &mut Steps<'_>) -> Result<Asset> {
+    check_files(request)?;
+    let asset = steps.run("read", || asset::load_as(&request.input, &request.reading))?;
+    refuse_second(&asset)?;
+    Ok(asset)
 }
 
 /// With what the steps tell at their end.
@@ -168,17 +113,11 @@ fn done(mut baked: Baked, steps: Steps<'_>) -> Baked {
     Baked { steps: times, cached, ..baked }
 }
 
-/// Reads the input and grows its coat; `check` sees the asset before the long work.
-fn dress(request: &Request, steps: &mut Steps<'_>, check: &dyn Fn(&Asset) -> Result<()>) -> Result<(Asset, Baked)> {
+/// Grows the asset's coat.
+fn dress(mut asset: Asset, request: &Request, steps: &mut Steps<'_>) -> Result<(Asset, Baked)> {
     let wetted = |(material, preset): &(String, Preset)| (material.clone(), preset.wetted());
     let presets = request.presets.iter().map(wetted).collect();
     let request = &Request { preset: request.preset.wetted(), presets, ..request.clone() };
-    for preset in std::iter::once(&request.preset).chain(request.presets.iter().map(|(_, preset)| preset)) {
-        regions::check_files(preset)?;
-    }
-    let mut asset = steps.run("read", || asset::load_as(&request.input, &request.reading))?;
-    refuse_second(&asset)?;
-    check(&asset)?;
     let selection = asset::select(&asset.parts, &request.materials)?;
     let chosen = selection.parts;
     for (material, _) in &request.presets {

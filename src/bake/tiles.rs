@@ -32,6 +32,7 @@ pub(super) fn recipe(task: &Task<'_>, preset: &Preset, steps: &mut Steps<'_>) ->
             crowding: fibres.each_ref().map(crowding),
             undercoat_share: Vec::new(),
         }),
+        draft: task.request.draft,
     })
 }
 
@@ -94,7 +95,7 @@ fn baked(hair: &Hair, recipe: &TileRecipe, steps: &mut Steps<'_>) -> Tile {
     let [guard, undercoat] = hair.fibres.each_ref().map(Fibre::colourless);
     // Where a level's slabs end hangs on all hair.
     let ends = steps.key("tile-ends", &(guard, undercoat, hair.seed, recipe.shells));
-    let gains = steps.key("tile-gains", &(guard, undercoat, hair.seed, recipe.shells, recipe.lean_deg));
+    let gains = steps.key("tile-gains", &(guard, undercoat, hair.seed, recipe.shells, recipe.lean_deg, recipe.draft));
     let mut told = RaysTold { ends: steps.find(ends.as_ref()), gains: steps.find(gains.as_ref()) };
     let known = told.clone();
     let tile = steps.run("tile", || bake_with(grown, recipe, &mut told));

@@ -167,7 +167,7 @@ impl View {
         }
         let recipe = self.recipe.choices().recipe()?;
         let progress = console.progress();
-        let seen = seen(&recipe, &self.file, &reading, self.cache.store(), &mut |step| progress.step(step));
+        let seen = seen(&recipe, (&self.file, None), &reading, self.cache.store(), &mut |step| progress.step(step));
         progress.finish();
         let (asset, coat, baked) = seen?;
         baked.notes.iter().for_each(|note| console.note(note));

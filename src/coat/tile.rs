@@ -28,6 +28,8 @@ pub struct TileRecipe {
     pub lean_deg: f32,
     /// How its hair is lit; `undercoat_share` is filled in by the bake.
     pub looks: Option<TileLooks>,
+    /// Whether it is to look at until a better one is there: its opacity is measured by few rays.
+    pub draft: bool,
 }
 
 impl TileRecipe {
@@ -87,7 +89,7 @@ pub fn bake_with(hair: &TileHair, recipe: &TileRecipe, told: &mut RaysTold) -> T
     };
     let truth = || {
         let mapped = told.gains.is_none().then(|| hair.mapped(lean))?;
-        Some(gains::Truth::new(mapped.scene(), mapped.edge_m, mapped.height_m, &cuts, lean))
+        Some(gains::Truth::new(mapped.scene(), (mapped.edge_m, mapped.height_m), &cuts, lean, recipe.draft))
     };
     let fin = || texture::composite(hair, &recipe.fins);
     let (mut stacks, (truth, fin)) = rayon::join(stacks, || rayon::join(truth, fin));

@@ -7,7 +7,7 @@ use crate::data::image::Image8;
 use crate::error::{Error, Kind, Result};
 use crate::gpu::{Choice, Gpu};
 use crate::math::{DVec3, Vec3};
-use crate::runtime::gpu::{Drawn, KeyShadow, PassCost, Prepared, Renderer};
+use crate::runtime::gpu::{Drawn, KeyShadow, PassCost, Passes, Prepared, Renderer};
 use crate::runtime::{Blending, Combing, Frame, Motion, Picture, Show, Spring, Wind, step_texels};
 use crate::stage::light::Lit;
 use crate::viewer::bald::{self, Baldness};
@@ -90,7 +90,10 @@ pub struct Statistics {
 pub fn start(choice: Choice, answer: impl Fn(Result<Answer>) + Send + 'static) -> Result<Sender<Order>> {
     let (sender, orders) = mailbox();
     let work = move || match Gpu::open(&choice) {
-        Ok(gpu) => serve(&gpu, &orders, &answer),
+        Ok(gpu) => match Passes::new(&gpu, 1) {
+            Ok(passes) => serve(&gpu, &passes, &orders, &answer),
+            Err(error) => answer(Err(error)),
+        },
         Err(error) => answer(Err(error)),
     };
     std::thread::Builder::new()
@@ -101,10 +104,10 @@ pub fn start(choice: Choice, answer: impl Fn(Result<Answer>) + Send + 'static) -
 }
 
 /// Until nobody orders any more. What failed is told, and the next order awaited.
-fn serve(gpu: &Gpu, orders: &Receiver<Order>, answer: &dyn Fn(Result<Answer>)) {
+fn serve(gpu: &Gpu, passes: &Passes, orders: &Receiver<Order>, answer: &dyn Fn(Result<Answer>)) {
     let mut next = orders.take();
     while let Some(order) = next {
-        next = draw_model(gpu, order, orders, answer).unwrap_or_else(|error| {
+        next = draw_model((gpu, passes), order, orders, answer).unwrap_or_else(|error| {
             answer(Err(error));
             orders.take()
         });
@@ -122,13 +125,13 @@ fn staging(order: &Order) -> (Option<Moment>, Combing, Option<Chart>, bool) {
 
 /// Draws one model until another is wanted, which is returned.
 fn draw_model(
-    gpu: &Gpu,
+    (gpu, passes): (&Gpu, &Passes),
     mut order: Order,
     orders: &Receiver<Order>,
     answer: &dyn Fn(Result<Answer>),
 ) -> Result<Option<Order>> {
     let model = Arc::clone(&order.model);
-    let renderer = Renderer::new(gpu, &model.coat.tiles, 1)?;
+    let renderer = Renderer::with(gpu, passes, &model.coat.tiles)?;
     let outline = chart::tile_outline();
     let (mut motion, mut last) = (Motion::default(), None::<Instant>);
     loop {

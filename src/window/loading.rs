@@ -10,6 +10,7 @@ use crate::bake::units;
 use crate::cache::Store;
 use crate::data::coat::Coat;
 use crate::error::{Error, Kind, Result};
+use crate::metrics::timing;
 use crate::preset::Preset;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -39,12 +40,11 @@ impl Subject {
 }
 
 /// What is to be made ready.
-#[derive(Clone, Debug)]
 pub enum Task {
     /// All of it, from disk.
     Read(Subject),
-    /// A new coat by this recipe.
-    Bake(Subject, Box<Recipe>),
+    /// A new coat by this recipe, of the asset that was read before, if it was.
+    Bake(Subject, Option<Arc<Model>>, Box<Recipe>),
 }
 
 /// What comes of it.
@@ -69,6 +69,8 @@ pub struct Ready {
     pub notes: Vec<String>,
     /// Wall time, ms.
     pub ms: f64,
+    /// And of its bake by step; none where it came with its coat.
+    pub steps: timing::Steps,
     /// Whether it was read from disk, so that changes of its preset begin anew.
     pub read: bool,
 }
@@ -77,6 +79,8 @@ pub struct Ready {
 pub struct Sketch {
     /// Of what.
     pub subject: Subject,
+    /// It without a coat, where it was read.
+    pub bare: Option<Arc<Model>>,
     /// By which recipe.
     pub recipe: Box<Recipe>,
     /// Which change it is of.
@@ -90,8 +94,8 @@ pub struct Sketch {
 pub fn start_sketches(tell: impl Fn(u64, Result<Ready>) + Send + 'static) -> Result<Sender<Sketch>> {
     let (sender, sketches) = mailbox::<Sketch>();
     let work = move || {
-        while let Some(Sketch { subject, recipe, change }) = sketches.take() {
-            tell(change, baked(&subject, *recipe, &|_| ()));
+        while let Some(Sketch { subject, bare, recipe, change }) = sketches.take() {
+            tell(change, baked(&subject, bare.as_deref(), *recipe, &|_| ()));
         }
     };
     std::thread::Builder::new()
@@ -119,7 +123,7 @@ fn serve(tasks: &Receiver<Task>, tell: &dyn Fn(News)) {
     while let Some(task) = tasks.take() {
         let made = match task {
             Task::Read(subject) => read(&subject, tell),
-            Task::Bake(subject, recipe) => baked(&subject, *recipe, tell),
+            Task::Bake(subject, bare, recipe) => baked(&subject, bare.as_deref(), *recipe, tell),
         };
         tell(made.map_or_else(News::Failed, News::Ready));
     }
@@ -133,7 +137,14 @@ fn read(subject: &Subject, tell: &dyn Fn(News)) -> Result<Ready> {
             .map_err(|error| error.with_hint("a mesh without a coat is baked with a preset, as `fox`"))?;
         let notes = asset.warnings.clone();
         let model = Arc::new(Model::new(asset, coat)?);
-        return Ok(Ready { model, recipe: None, notes, ms: start.elapsed().as_secs_f64() * 1e3, read: true });
+        return Ok(Ready {
+            model,
+            recipe: None,
+            notes,
+            ms: start.elapsed().as_secs_f64() * 1e3,
+            steps: timing::Steps::default(),
+            read: true,
+        });
     };
     let recipe = choices.recipe()?;
     tell(News::Step("read"));
@@ -141,16 +152,23 @@ fn read(subject: &Subject, tell: &dyn Fn(News)) -> Result<Ready> {
     let chosen = asset::select(&asset.parts, &recipe.materials)?.parts;
     let sample = subject.input.starts_with("sample:");
     let metres_per_unit = units::scale(recipe.units, &recipe.preset, &asset, &chosen, sample)?.metres_per_unit;
-    tell(News::Bare(Arc::new(Model::new(asset, Coat { metres_per_unit, ..Coat::default() })?)));
-    Ok(Ready { read: true, ..baked(subject, recipe, tell)? })
+    let bare = Arc::new(Model::new(asset, Coat { metres_per_unit, ..Coat::default() })?);
+    tell(News::Bare(Arc::clone(&bare)));
+    Ok(Ready { read: true, ..baked(subject, Some(&bare), recipe, tell)? })
 }
 
-fn baked(subject: &Subject, recipe: Recipe, tell: &dyn Fn(News)) -> Result<Ready> {
+fn baked(subject: &Subject, bare: Option<&Model>, recipe: Recipe, tell: &dyn Fn(News)) -> Result<Ready> {
     let start = Instant::now();
     let mut told = |step| tell(News::Step(step));
-    let (asset, coat, baked) = seen(&recipe, &subject.input, &subject.reading, subject.cache.clone(), &mut told)?;
+    let (asset, coat, baked) = seen(
+        &recipe,
+        (&subject.input, bare.map(|bare| &bare.asset)),
+        &subject.reading,
+        subject.cache.clone(),
+        &mut told,
+    )?;
     let model = Arc::new(Model::new(asset, coat)?);
     let notes = [baked.warnings, baked.notes].concat();
     let ms = start.elapsed().as_secs_f64() * 1e3;
-    Ok(Ready { model, recipe: Some(Box::new(recipe)), notes, ms, read: false })
+    Ok(Ready { model, recipe: Some(Box::new(recipe)), notes, ms, steps: baked.steps, read: false })
 }

@@ -24,6 +24,7 @@ pub mod script;
 mod set;
 mod shell;
 mod state;
+mod told;
 mod truth;
 mod watch;
 

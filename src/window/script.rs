@@ -22,6 +22,8 @@ pub enum Action {
     Wait(Option<f64>),
     /// `picture FILE.png`: all of the window, into a file.
     Picture(PathBuf),
+    /// `report FILE.json`: what the window tells of itself, into a file.
+    Report(PathBuf),
     /// `quit`: closes the window.
     Quit,
 }
@@ -54,7 +56,7 @@ impl Script {
                     .with_field(format!("line {}", at + 1))
                     .with_found(line)
                     .with_expected(
-                        "resize W H, scale F, drop FILE, press KEY, set NAME VALUE, wait [S], picture FILE.png or quit",
+                        "resize W H, scale F, drop FILE, press KEY, set NAME VALUE, wait [S], picture FILE.png, report FILE.json or quit",
                     )
             })
         };
@@ -82,6 +84,7 @@ fn action(line: &str) -> Option<Action> {
         "wait" if rest.is_empty() => Some(Action::Wait(None)),
         "wait" => rest.parse().ok().filter(|s| (0.0..=600.0).contains(s)).map(|s| Action::Wait(Some(s))),
         "picture" => file().map(Action::Picture),
+        "report" => file().map(Action::Report),
         "quit" if rest.is_empty() => Some(Action::Quit),
         _ => None,
     }

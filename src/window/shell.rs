@@ -51,6 +51,9 @@ struct Opened {
     input: egui_winit::State,
     painter: Painter,
     app: App,
+    /// Since when something waits to be answered, and when the last picture of the controls was out.
+    asked: Option<Instant>,
+    painted: Instant,
     /// Where settings are kept; nowhere where a script drives the window.
     settings: Option<PathBuf>,
 }
@@ -83,7 +86,7 @@ impl Opened {
         let mut app = App::new(begin, &context)?;
         app.state.open.panel = remembered.panel;
         window.request_redraw();
-        Ok(Self { window, input, painter, app, settings })
+        Ok(Self { window, input, painter, app, asked: None, painted: Instant::now(), settings })
     }
 
     /// Shows the window anew. True where it is to be closed.
@@ -92,6 +95,10 @@ impl Opened {
         let mut raw = self.input.take_egui_input(&self.window);
         let mut wishes = self.app.play(&mut raw, &context);
         let output = context.run_ui(raw, |ui| wishes.extend(self.app.frame(ui)));
+        if let Some(asked) = self.asked.take() {
+            // Without what it took to draw the frame before.
+            self.app.answers.add(asked.max(self.painted).elapsed());
+        }
         self.input.handle_platform_output(&self.window, output.platform_output);
         let jobs = context.tessellate(output.shapes, output.pixels_per_point);
         self.painter.paint(&self.window, &jobs, output.textures_delta, output.pixels_per_point)?;
@@ -104,7 +111,14 @@ impl Opened {
                 Wish::Close => close = true,
             }
         }
+        self.painted = Instant::now();
         Ok(close)
+    }
+
+    /// Something that was to happen at this time is to be answered.
+    fn ask(&mut self, at: Instant) {
+        self.asked.get_or_insert(at);
+        self.window.request_redraw();
     }
 }
 
@@ -154,25 +168,25 @@ impl ApplicationHandler<Wake> for Shell {
             },
             event => {
                 if open.input.on_window_event(&open.window, &event).repaint {
-                    open.window.request_redraw();
+                    open.ask(Instant::now());
                 }
             }
         }
     }
 
     fn user_event(&mut self, _: &ActiveEventLoop, Wake(after): Wake) {
-        let Some(open) = &self.open else { return };
+        let Some(open) = &mut self.open else { return };
         if after.is_zero() {
-            open.window.request_redraw();
+            open.ask(Instant::now());
         } else if let Some(at) = Instant::now().checked_add(after) {
             self.next = Some(self.next.map_or(at, |next| next.min(at)));
         }
     }
 
     fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
-        if let (StartCause::ResumeTimeReached { .. }, Some(open)) = (cause, &self.open) {
+        if let (StartCause::ResumeTimeReached { requested_resume, .. }, Some(open)) = (cause, &mut self.open) {
             self.next = None;
-            open.window.request_redraw();
+            open.ask(requested_resume);
         }
     }
 

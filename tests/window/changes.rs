@@ -75,7 +75,7 @@ fn a_saved_preset_bakes_to_what_the_window_shows() {
     let shown = file(edits.recipe());
     assert!(shown == file(&again));
     // The coat that is drawn is the one in the file.
-    let (_, coat, _) = seen(edits.recipe(), "sample:sphere", &Default::default(), None, &mut |_| ()).unwrap();
+    let (_, coat, _) = seen(edits.recipe(), ("sample:sphere", None), &Default::default(), None, &mut |_| ()).unwrap();
     let written = folder.path().join("written.glb");
     std::fs::write(&written, shown).unwrap();
     let (_, read) = furrier::asset::coat::read_coat(Path::new(&written)).unwrap();

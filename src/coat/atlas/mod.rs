@@ -196,7 +196,7 @@ impl Reference {
         let truth = || {
             let mapped = full.mapped(lean);
             let cut = std::slice::from_ref(&slabs);
-            gains::Truth::new(mapped.scene(), mapped.edge_m, mapped.height_m, cut, lean).of(&slabs)
+            gains::Truth::new(mapped.scene(), (mapped.edge_m, mapped.height_m), cut, lean, recipe.draft).of(&slabs)
         };
         let stack = || {
             let slopes = mean_slopes(&thin.guard, &slabs, full.height_m);

@@ -12,6 +12,8 @@ use rayon::prelude::*;
 const AZIMUTHS: usize = 8;
 /// Rays along a tile's edge per direction, of a dense coat and of one that skin is seen through.
 const RAYS: [usize; 2] = [16, 40];
+/// Rays along a tile's edge per direction of a draft.
+const DRAFT_RAYS: usize = 5;
 /// Places along a tile's edge where the stack is evaluated, per direction, likewise.
 const SPOTS: [usize; 2] = [16, 24];
 /// Share of the skin that is seen through a thin coat.
@@ -53,8 +55,15 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// Of strands mapped by `skin_from_tile`, which reach up to `top_m` there, down to the bottoms of all slabs of `cuts`.
-    pub fn new(scene: Geometry<'_>, edge_m: f32, top_m: f32, cuts: &[Slabs], skin_from_tile: Mat3) -> Self {
+    /// Of strands mapped by `skin_from_tile`, which reach up to `top_m` there, down to the bottoms of all slabs of `cuts`. A `draft` casts a few
+    /// rays.
+    pub fn new(
+        scene: Geometry<'_>,
+        (edge_m, top_m): (f32, f32),
+        cuts: &[Slabs],
+        skin_from_tile: Mat3,
+        draft: bool,
+    ) -> Self {
         let of = |cut: &Slabs| (0..cut.count()).map(|slab| cut.span(slab)[0]).collect::<Vec<_>>();
         let mut bottoms: Vec<f32> = cuts.iter().flat_map(of).collect();
         bottoms.sort_by(|a, b| b.total_cmp(a));
@@ -73,6 +82,9 @@ impl Truth {
             mean
         };
         let through = GAIN_ANGLES_DEG.map(|theta| {
+            if draft {
+                return mean(theta, DRAFT_RAYS);
+            }
             let few = mean(theta, RAYS[0]);
             if is_thin(few.last()) { mean(theta, RAYS[1]) } else { few }
         });

@@ -29,6 +29,7 @@ use crate::gpu::Gpu;
 use crate::runtime::draw_list::{DrawList, Picture};
 use pipelines::Pipelines;
 use shadow_map::ShadowMap;
+use std::sync::Arc;
 use tile::GpuTile;
 
 /// Time and memory of one pass.
@@ -77,11 +78,36 @@ pub enum KeyShadow {
     TooNear,
 }
 
+/// What all coats are drawn with: compiled once for a device.
+#[derive(Clone)]
+pub struct Passes {
+    pipelines: Arc<Pipelines>,
+    shadow_map: Arc<ShadowMap>,
+    samples: u32,
+}
+
+impl Passes {
+    /// Compiles them. `samples` are those along a pixel's edge, 1 to 8.
+    ///
+    /// # Errors
+    /// [`crate::error::Kind::Usage`] for a bad number of samples; [`crate::error::Kind::Device`] from the device.
+    pub fn new(gpu: &Gpu, samples: u32) -> Result<Self> {
+        if !(1..=8).contains(&samples) {
+            return Err(Error::usage("the number of samples is out of range")
+                .with_field("samples along a pixel's edge")
+                .with_found(samples)
+                .with_expected("1 to 8"));
+        }
+        let (pipelines, shadow_map) = (Pipelines::new(gpu, samples)?, ShadowMap::new(gpu)?);
+        Ok(Self { pipelines: Arc::new(pipelines), shadow_map: Arc::new(shadow_map), samples })
+    }
+}
+
 /// A device with what all coats of the same tiles are drawn with, whatever their pose.
 pub struct Renderer<'a> {
     gpu: &'a Gpu,
-    pipelines: Pipelines,
-    shadow_map: ShadowMap,
+    pipelines: Arc<Pipelines>,
+    shadow_map: Arc<ShadowMap>,
     samples: u32,
     /// Per tile, its levels.
     tiles: Vec<Vec<GpuTile>>,
@@ -93,19 +119,20 @@ impl<'a> Renderer<'a> {
     /// Compiles the passes and uploads `tiles`. `samples` are those along a pixel's edge, 1 to 8.
     ///
     /// # Errors
-    /// [`crate::error::Kind::Usage`] for a bad number of samples; [`crate::error::Kind::Input`] for a tile whose mips do not
-    /// fit together; [`crate::error::Kind::Device`] from the device.
+    /// As [`Passes::new`] and [`Self::with`].
     pub fn new(gpu: &'a Gpu, tiles: &[Tile], samples: u32) -> Result<Self> {
-        if !(1..=8).contains(&samples) {
-            return Err(Error::usage("the number of samples is out of range")
-                .with_field("samples along a pixel's edge")
-                .with_found(samples)
-                .with_expected("1 to 8"));
-        }
-        let pipelines = Pipelines::new(gpu, samples)?;
+        Self::with(gpu, &Passes::new(gpu, samples)?, tiles)
+    }
+
+    /// Uploads `tiles`, to be drawn with passes that were compiled for this device.
+    ///
+    /// # Errors
+    /// [`crate::error::Kind::Input`] for a tile whose mips do not fit together; [`crate::error::Kind::Device`] from the device.
+    pub fn with(gpu: &'a Gpu, passes: &Passes, tiles: &[Tile]) -> Result<Self> {
+        let Passes { pipelines, shadow_map, samples } = passes.clone();
         let bare = GpuTile::new(gpu, &pipelines.layouts, &tile::bare_tile(), f32::INFINITY)?;
         let tiles = tiles.iter().map(|tile| GpuTile::levels(gpu, &pipelines.layouts, tile)).collect::<Result<_>>()?;
-        Ok(Self { gpu, pipelines, shadow_map: ShadowMap::new(gpu)?, samples, tiles, bare })
+        Ok(Self { gpu, pipelines, shadow_map, samples, tiles, bare })
     }
 
     /// Memory of the tiles' textures, bytes.

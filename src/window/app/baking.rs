@@ -4,16 +4,22 @@ use super::{App, Voice, Word};
 use crate::asset::coat::Fallback;
 use crate::bake::recipe::{Choices, Layout, Recipe};
 use crate::error::Result;
+use crate::metrics::timing;
 use crate::window::loading::{self, Ready, Sketch, Task};
 use crate::window::mailbox::Sender;
+use crate::window::model::Model;
 use crate::window::parameters::{self, Wanted};
+use crate::window::told::Took;
 use egui::Ui;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// How long the hand must rest before the final coat is baked.
 const RESTS: Duration = Duration::from_millis(350);
 /// Texels along an edge of a coarse coat's tile, and its layers, at most.
 const COARSE: [u32; 2] = [32, 6];
+/// Texels of a coarse coat's fins, along the skin and up, at most.
+const COARSE_FIN: [u32; 2] = [128, 32];
 
 /// Which coat is wanted, and which is there.
 pub(super) struct Baking {
@@ -24,8 +30,12 @@ pub(super) struct Baking {
     touched: Option<Instant>,
     /// The recipe whose final coat is ordered and not there yet.
     ordered: Option<Box<Recipe>>,
-    /// From the last change to its coarse coat and to its final one, ms.
-    pub(super) took_ms: [Option<f64>; 2],
+    /// From the last change to its coarse coat and to its final one.
+    pub(super) took: [Took; 2],
+    /// These coats.
+    came: [Option<Arc<Model>>; 2],
+    /// What the steps of the final one took.
+    pub(super) steps: timing::Steps,
     /// When the last change was.
     began: Option<Instant>,
 }
@@ -34,7 +44,16 @@ impl Baking {
     pub(super) fn new(voice: Voice) -> Result<Self> {
         let told = move |change, ready: Result<Ready>| voice.say(Word::Sketched(change, Box::new(ready)));
         let sketches = loading::start_sketches(told)?;
-        Ok(Self { sketches, change: 0, touched: None, ordered: None, took_ms: [None; 2], began: None })
+        Ok(Self {
+            sketches,
+            change: 0,
+            touched: None,
+            ordered: None,
+            took: [Took::default(); 2],
+            came: [None, None],
+            steps: timing::Steps::default(),
+            began: None,
+        })
     }
 
     /// Counts changes of the preset.
@@ -53,13 +72,28 @@ impl Baking {
     }
 
     /// Takes note of a final coat. False where it is not of what is wanted now.
-    pub(super) fn settled(&mut self, recipe: Option<&Recipe>) -> bool {
+    pub(super) fn settled(&mut self, recipe: Option<&Recipe>, model: &Arc<Model>, steps: timing::Steps) -> bool {
         let wanted = self.ordered.as_deref() == recipe && self.touched.is_none();
         if wanted {
             self.ordered = None;
-            self.took_ms[1] = self.began.map(|began| began.elapsed().as_secs_f64() * 1e3);
+            self.came(1, model);
+            self.steps = steps;
         }
         wanted
+    }
+
+    fn came(&mut self, which: usize, model: &Arc<Model>) {
+        self.took[which].baked(self.began);
+        self.came[which] = Some(Arc::clone(model));
+    }
+
+    /// Takes note of a picture of `model`.
+    pub(super) fn seen(&mut self, model: &Arc<Model>) {
+        for (took, came) in self.took.iter_mut().zip(&self.came) {
+            if came.as_ref().is_some_and(|came| Arc::ptr_eq(came, model)) {
+                took.seen(self.began);
+            }
+        }
     }
 }
 
@@ -70,6 +104,9 @@ fn coarse(recipe: &Recipe) -> Recipe {
     for preset in presets {
         let shells = &mut preset.shells;
         (shells.texture_size, shells.layers) = (shells.texture_size.min(COARSE[0]), shells.layers.min(COARSE[1]));
+        let fins = &mut preset.fins;
+        fins.texture_width = fins.texture_width.min(COARSE_FIN[0]);
+        fins.texture_height = fins.texture_height.min(COARSE_FIN[1]);
     }
     Recipe { fallback: Fallback::None, draft: true, ..recipe }
 }
@@ -80,9 +117,10 @@ impl App {
         let Some(edits) = &self.edits else { return };
         let mut wanted = parameters::wetness(ui, edits);
         egui::CollapsingHeader::new("Preset").default_open(false).show(ui, |ui| {
-            if let [Some(coarse), last] = self.baking.took_ms {
-                let last = last.map_or("…".to_owned(), |ms| format!("{ms:.0} ms"));
-                ui.weak(format!("from a change to its coarse coat {coarse:.0} ms, to its final one {last}"));
+            let [coarse, last] = self.baking.took.map(|took| took.seen_ms);
+            if coarse.or(last).is_some() {
+                let [coarse, last] = [coarse, last].map(|ms| ms.map_or("…".to_owned(), |ms| format!("{ms:.0} ms")));
+                ui.weak(format!("from a change to the sight of its coarse coat {coarse}, of its final one {last}"));
             }
             wanted.extend(parameters::show(ui, edits, &mut self.typed));
         });
@@ -163,9 +201,14 @@ impl App {
         let baking = &mut self.baking;
         baking.change += 1;
         (baking.touched, baking.began) = (Some(Instant::now()), Some(Instant::now()));
-        baking.took_ms = [None; 2];
+        (baking.took, baking.came) = ([Took::default(); 2], [None, None]);
         let recipe = Box::new(coarse(edits.recipe()));
-        baking.sketches.put(Sketch { subject: self.subject.clone(), recipe, change: baking.change });
+        baking.sketches.put(Sketch {
+            subject: self.subject.clone(),
+            bare: self.bare.clone(),
+            recipe,
+            change: baking.change,
+        });
     }
 
     pub(super) fn sketched(&mut self, change: u64, ready: Result<Ready>) {
@@ -175,7 +218,7 @@ impl App {
         }
         match ready {
             Ok(ready) => {
-                self.baking.took_ms[0] = self.baking.began.map(|began| began.elapsed().as_secs_f64() * 1e3);
+                self.baking.came(0, &ready.model);
                 self.look_at(ready.model);
             }
             Err(error) => self.trouble = Some(error),
@@ -193,7 +236,7 @@ impl App {
                 self.baking.touched = None;
                 self.baking.ordered = Some(recipe.clone());
                 self.step = Some("bake");
-                self.load.put(Task::Bake(self.subject.clone(), recipe));
+                self.load.put(Task::Bake(self.subject.clone(), self.bare.clone(), recipe));
             }
         }
     }

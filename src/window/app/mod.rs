@@ -6,6 +6,7 @@ mod hair;
 mod picture;
 mod playing;
 mod reading;
+mod report;
 mod status;
 
 pub use begin::{Begin, Wish};
@@ -24,6 +25,7 @@ use super::panel;
 use super::parameters::Typed;
 use super::script::Script;
 use super::state::{Clock, Open, State};
+use super::told::Answers;
 use super::truth::{self, Truth};
 use super::watch::Watch;
 use crate::bake::recipe::Choices;
@@ -70,6 +72,8 @@ impl Voice {
 pub struct App {
     /// What the person decides.
     pub state: State,
+    /// How quickly the window answered since that was reported last.
+    pub answers: Answers,
     subject: loading::Subject,
     /// As [`Begin::in_words`].
     in_words: fn(&str, &Choices) -> String,
@@ -78,6 +82,8 @@ pub struct App {
     viewpoint: Options,
     moment: Option<(String, f64)>,
     model: Option<Arc<Model>>,
+    /// The asset as it was read last, without its coat; none until then, and where it wears one.
+    bare: Option<Arc<Model>>,
     /// Whether the next model is another asset, to be framed anew.
     fresh: bool,
     edits: Option<Edits>,
@@ -126,6 +132,7 @@ impl App {
         subject.cache = subject.cache.or(scratch.as_ref().map(|folder| Store::new(folder.path())));
         let eye = Eye::first(&begin.stage.viewpoint, &Default::default(), 1.0);
         let mut app = Self {
+            answers: Answers::default(),
             state: State {
                 eye,
                 lighting,
@@ -145,6 +152,7 @@ impl App {
             viewpoint: begin.stage,
             moment: begin.moment,
             model: None,
+            bare: None,
             fresh: true,
             edits: None,
             typed: Typed::default(),

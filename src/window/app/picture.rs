@@ -8,10 +8,12 @@ use crate::window::look::Look;
 use crate::window::model::Model;
 use egui::{ColorImage, Rect, TextureOptions, Ui};
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Time that a picture may take while something moves, ms.
 const MOVING_MS: f64 = 90.0;
+/// How long pictures stay coarse for a bake.
+const PATIENCE: Duration = Duration::from_millis(2500);
 /// Coarsest picture while something moves.
 const COARSEST: u32 = 8;
 
@@ -81,7 +83,9 @@ impl App {
             self.changed = Instant::now();
         }
         let sways = self.state.spring.is_some();
-        let rest = self.changed.elapsed() >= QUIET && !self.state.clock.playing && !sways;
+        // A coat that is still baked needs the processor more than its draft does, for a while.
+        let baking = self.baking.due() && self.changed.elapsed() < PATIENCE;
+        let rest = self.changed.elapsed() >= QUIET && !self.state.clock.playing && !sways && !baking;
         let coarseness = if rest { 1 } else { self.coarseness() };
         let count = self.state.open.counting && rest;
         let newer = rest && last.is_none_or(|last| (last.coarseness, last.count) != (coarseness, count));
@@ -109,6 +113,7 @@ impl App {
             Some(texture) => texture.set(image, TextureOptions::LINEAR),
             None => self.texture = Some(self.voice.context.load_texture("picture", image, TextureOptions::LINEAR)),
         }
+        self.baking.seen(&answer.model);
         self.shown = Some(answer);
         self.judge();
     }

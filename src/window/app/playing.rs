@@ -41,6 +41,12 @@ impl App {
                     return vec![Wish::Close];
                 }
             }
+            Action::Report(path) => {
+                if let Err(error) = self.report(&path) {
+                    self.failed = Some(error);
+                    return vec![Wish::Close];
+                }
+            }
             Action::Wait(_) => {}
         }
         Vec::new()

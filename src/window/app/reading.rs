@@ -18,7 +18,7 @@ const WRITTEN: Duration = Duration::from_millis(400);
 impl App {
     /// Reads the subject from disk, and hears from now on when it changes there.
     pub(super) fn read(&mut self) {
-        self.step = Some("read");
+        (self.step, self.bare) = (Some("read"), None);
         self.load.put(Task::Read(self.subject.clone()));
         self.watch(BTreeSet::new());
     }
@@ -80,6 +80,7 @@ impl App {
         match news {
             News::Step(step) => self.step = Some(step),
             News::Bare(model) => {
+                self.bare = Some(Arc::clone(&model));
                 self.watch(model.asset.document.files.iter().cloned().collect());
                 // While a coat is baked anew, the one before it is shown.
                 if self.fresh || !self.model.as_ref().is_some_and(|model| model.furred()) {
@@ -88,14 +89,14 @@ impl App {
             }
             News::Ready(ready) => {
                 (self.step, self.trouble) = (None, None);
-                let Ready { model, recipe, notes, ms, read } = ready;
+                let Ready { model, recipe, notes, ms, read, steps } = ready;
                 if recipe.is_none() {
                     self.watch(model.asset.document.files.iter().cloned().collect());
                 }
                 if read {
                     self.edits = recipe.map(Edits::new);
                     self.baking.forget();
-                } else if !self.baking.settled(recipe.as_deref()) {
+                } else if !self.baking.settled(recipe.as_deref(), &model, steps) {
                     // It was changed again meanwhile.
                     return;
                 }
