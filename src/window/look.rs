@@ -5,6 +5,7 @@ use crate::data::camera::Camera;
 use crate::data::film::Film;
 use crate::data::image::Image8;
 use crate::math::Vec3;
+use crate::runtime::Blending;
 use crate::stage::tone::{self, Development};
 use crate::viewer::Shown;
 use rayon::prelude::*;
@@ -33,6 +34,8 @@ pub struct Look {
     pub shown: Shown,
     /// Level of detail; none to choose by size.
     pub level: Option<usize>,
+    /// How shells and fins come together in a pixel.
+    pub blend: Blending,
     /// Of an animation; none in the rest pose.
     pub moment: Option<Moment>,
 }

@@ -4,7 +4,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use furrier::bake::recipe::Choices;
 use furrier::gpu::Choice;
-use furrier::runtime::Show;
+use furrier::runtime::{Blending, Show};
 use furrier::stage::options::Options;
 use furrier::viewer::Shown;
 use furrier::window::{App, Begin, Wish, loading, script::Script};
@@ -23,6 +23,7 @@ pub fn begin(subject: loading::Subject) -> Begin {
         stage: Options::default(),
         shown: Shown::Coat(Show::default()),
         level: None,
+        blend: Blending::Sorted,
         moment: None,
         shadow: true,
         device: Choice::Auto,

@@ -2,6 +2,7 @@
 
 use crate::bake::recipe::Choices;
 use crate::gpu::Choice;
+use crate::runtime::Blending;
 use crate::stage::options::Options;
 use crate::viewer::Shown;
 use crate::window::loading::Subject;
@@ -18,6 +19,8 @@ pub struct Begin {
     pub shown: Shown,
     /// Level of detail; none to choose by size.
     pub level: Option<usize>,
+    /// How shells and fins come together in a pixel.
+    pub blend: Blending,
     /// Animation by name or number, and seconds into it.
     pub moment: Option<(String, f64)>,
     /// Whether the key light casts a shadow.

@@ -132,6 +132,7 @@ impl App {
                 development: begin.stage.development,
                 shown: begin.shown,
                 level: begin.level,
+                blend: begin.blend,
                 clock: Clock::default(),
                 comparison: Comparison::default(),
                 wind: Wind::default(),
