@@ -13,6 +13,7 @@ mod axes;
 mod bake;
 mod batch;
 mod cache;
+mod channels;
 mod circles;
 mod cli;
 mod coat_file;

@@ -11,7 +11,7 @@ use furrier::stage::options;
 use furrier::viewer::{self, Chart, Shown, ViewOptions, parse_show, stage};
 
 /// `tile` carried on every part of `asset` that is not bare, hair along the normals, no fins.
-fn dressed(asset: &Asset, tile: Tile) -> Coat {
+pub fn dressed(asset: &Asset, tile: Tile) -> Coat {
     let mut coat = Coat { metres_per_unit: 1.0, ..Coat::default() };
     for part in asset.parts.iter().filter(|part| !asset::is_bare(&part.material_name)) {
         let mesh = part.mesh(1.0).unwrap();

@@ -38,7 +38,8 @@ fn vertex(
     return Varyings(clip, position_m, normal, colour, uv, coat_uv, coat_density, painted_uv);
 }
 
-// Whether it is drawn, or 4 for what it costs: fragments in red, reads of texels in green.
+// Whether it is drawn, or 4 for what it costs: fragments in red, reads of texels in green; or 5 for its hair: optical depth from outside in red,
+// and in green whether there is any.
 override MEASURE: u32 = 0u;
 // Reads of the tile, of what is painted and of the base colour, at the most that their samplers do.
 const READS: f32 = 13.0;
@@ -55,12 +56,16 @@ fn fragment(in: Varyings) -> @location(0) vec4<f32> {
         return vec4(1.0, READS + shadow_reads(SKIN_TAPS), 0.0, 0.0);
     }
     let furred = smoothstep(0.0, FADE_BELOW, painted.g) * select(0.0, 1.0, in.coat_density > 0.0);
+    let hair_depth = area_above(cover.a) * in.coat_density * painted.r * furred;
+    if MEASURE == 5u {
+        return vec4(hair_depth, furred, 0.0, 1.0);
+    }
     let base = in.colour * textureSample(base_texture, base_sampler, in.uv, 0).rgb;
     let albedo = base * mix(vec3(1.0), cover.rgb, furred);
     let world_ray = ray_direction(in.position_m);
     let turned = normalize(in.normal);
     let normal = select(turned, -turned, dot(turned, world_ray) > 0.0);
-    let outside_depth = min(area_above(cover.a) * in.coat_density * painted.r * furred, DEEPEST_SKIN);
+    let outside_depth = min(hair_depth, DEEPEST_SKIN);
     let gloss = 1.0 - furred;
 
     var radiance = albedo * view.ambient * exp(-outside_depth);

@@ -43,9 +43,15 @@ pub struct View {
     /// Drive the window by this file, one action a line (docs/window.md)
     #[arg(long, value_name = "FILE", conflicts_with = "screenshot")]
     script: Option<PathBuf>,
-    /// What to draw: parts of the coat; or how it lies: the hair's direction and length, the patches of its texture, or
-    /// their stretch; or where skin is bald that should not be; or how many texels each pixel reads
-    #[arg(long, value_name = "skin,shells,fins|field|patches|stretch|bald|cost", default_value = "skin,shells,fins")]
+    /// What to draw: parts of the coat; or how it lies: the hair's direction and length as signs or as colours, the patches of
+    /// its texture, or their stretch; or how much of what is behind it hair hides, or how much light it lets down to the skin;
+    /// or where skin is bald that should not be; or which level of detail is drawn, or the mesh over the picture; or how many
+    /// texels each pixel reads
+    #[arg(
+        long,
+        value_name = "skin,shells,fins|field|tangents|patches|stretch|opacity|transmittance|bald|levels|wireframe|cost",
+        default_value = "skin,shells,fins"
+    )]
     show: String,
     #[command(flatten)]
     stage: StageArgs,
@@ -186,7 +192,7 @@ impl View {
                 .with_parameter("occluder")
                 .with_hint("`--screenshot OUT.png` shows things beside it"));
         }
-        let ViewOptions { device, stage, show, moment, shadow_map, level, combing, .. } = self.options()?;
+        let ViewOptions { device, stage, show, moment, shadow_map, level, blend, combing, .. } = self.options()?;
         let subject = loading::Subject {
             input: self.file.clone(),
             reading: self.recipe.reading()?,
@@ -200,6 +206,7 @@ impl View {
             shown: show,
             level,
             combing,
+            blend,
             moment,
             shadow: shadow_map,
             device,

@@ -116,6 +116,12 @@ pub enum Blending {
     Hashed,
 }
 
+impl Blending {
+    /// All of them, by name.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("sorted", Self::Sorted), ("weighted", Self::Weighted), ("hashed", Self::Hashed)];
+}
+
 /// Camera and light.
 #[derive(Clone, Debug)]
 pub struct Frame {

@@ -1,22 +1,25 @@
 //! Floor 9: pictures of a coat or of how it lies: one, or several around it on a contact sheet.
 
 pub mod bald;
+pub mod channel;
 pub mod chart;
 pub mod cost;
 mod notes;
 mod occluder;
+mod shown;
 pub mod sitting;
 pub mod stage;
 pub mod subject;
 
+pub use channel::Channel;
 pub use chart::Chart;
+pub use shown::{CHANNELS, Shown, parse_show};
 
 use crate::asset::Asset;
 use crate::data::coat::Coat;
 use crate::data::image::Image8;
 use crate::error::{Error, Result};
 use crate::gpu::{Choice, Gpu};
-use crate::math::{DVec3, Vec3};
 use crate::metrics::timing::{Recorder, Report};
 use crate::runtime::gpu::{KeyShadow, Prepared, Renderer};
 use crate::runtime::{Blending, Combing, Frame, Picture, Show};
@@ -77,25 +80,6 @@ impl Default for ViewOptions {
     }
 }
 
-/// What is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shown {
-    /// The coat as a game draws it.
-    Coat(Show),
-    /// How it lies.
-    Chart(Chart),
-    /// Where hair is missing.
-    Bald,
-    /// How many texels each pixel reads.
-    Cost,
-}
-
-impl Default for Shown {
-    fn default() -> Self {
-        Self::Coat(Show::default())
-    }
-}
-
 /// A picture, as light and as a file holds it, and what it cost.
 #[derive(Clone, Debug)]
 pub struct Shot {
@@ -122,47 +106,6 @@ impl Shot {
             Format::Exr => exr::encode(&self.picture.film()),
         }
     }
-}
-
-/// Reads what to show: some of `skin`, `shells`, `fins`, with commas between, or one of `field`, `patches`, `stretch`, `bald`, `cost` alone.
-///
-/// # Errors
-/// Names the word that is none of them, or a chart that is not alone.
-pub fn parse_show(text: &str) -> Result<Shown> {
-    let alone = |word: &str| match word {
-        "field" => Some(Shown::Chart(Chart::Field)),
-        "patches" => Some(Shown::Chart(Chart::Patches)),
-        "stretch" => Some(Shown::Chart(Chart::Stretch)),
-        "bald" => Some(Shown::Bald),
-        "cost" => Some(Shown::Cost),
-        _ => None,
-    };
-    if let Some(shown) = alone(text.trim()) {
-        return Ok(shown);
-    }
-    let mut show = Show { skin: false, shells: false, fins: false };
-    for word in text.split(',').map(str::trim) {
-        match word {
-            "skin" => show.skin = true,
-            "shells" => show.shells = true,
-            "fins" => show.fins = true,
-            _ if alone(word).is_some() => {
-                return Err(Error::usage("field, patches, stretch, bald and cost are pictures by themselves")
-                    .with_parameter("show")
-                    .with_found(text)
-                    .with_expected(format!("{word} alone, or some of skin, shells, fins")));
-            }
-            _ => {
-                return Err(Error::usage("there is no such thing to show")
-                    .with_parameter("show")
-                    .with_found(word)
-                    .with_expected(
-                        "skin, shells, fins, with commas between; or one of field, patches, stretch, bald, cost",
-                    ));
-            }
-        }
-    }
-    Ok(Shown::Coat(show))
 }
 
 /// One picture of `asset` wearing `coat`.
@@ -222,7 +165,7 @@ impl Shots {
 
 fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpoint]) -> Result<Shots> {
     if options.occluder.is_some() && !matches!(options.show, Shown::Coat(_)) {
-        return Err(Error::usage("field, patches, stretch, bald and cost are shown of the asset alone")
+        return Err(Error::usage(format!("{} is shown of the asset alone", options.show))
             .with_parameter("occluder")
             .with_expected("some of skin, shells, fins to `show` beside it"));
     }
@@ -245,8 +188,8 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
     };
     let staged = || match options.show {
         Shown::Coat(show) => Ok((stage::scene(asset, coat, &textures, &pose), show, Vec::new())),
-        Shown::Bald | Shown::Cost => Ok((stage::scene(asset, coat, &textures, &pose), Show::default(), Vec::new())),
         Shown::Chart(chart) => drawing(chart),
+        _ => Ok((stage::scene(asset, coat, &textures, &pose), Show::default(), Vec::new())),
     };
     let (mut scene, show, legend) = recorder.step("pose", staged, |_| 0)?;
     options.combing.comb(&mut scene);
@@ -269,7 +212,8 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
     )?;
     let stage = &options.stage;
     // The studio's light and a chart's turn with the camera; all other stands still.
-    let turns = stage.lights.is_empty() && stage.environment.is_none();
+    let plain = matches!(options.show, Shown::Chart(chart) if chart.plain());
+    let turns = plain || stage.lights.is_empty() && stage.environment.is_none();
     let still = if turns {
         None
     } else {
@@ -280,17 +224,16 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
     let marked = (options.show == Shown::Bald).then(|| bald::marked(&scene));
     let mut over_skin = marked.as_ref().map(|marked| renderer.prepare(marked)).transpose()?;
     let mut pictures = Vec::with_capacity(viewpoints.len());
+    let mut legend = legend;
     let mut notes: Vec<String> = textures.notes.iter().cloned().chain(notes::coarsest(coat, options.level)).collect();
     for viewpoint in viewpoints {
         let start = Instant::now();
         let camera = viewpoint.camera(&subject, stage.aspect())?;
         let lit = if let Some(lit) = &still {
             lit.clone()
-        } else if charted {
-            let forward = DVec3::from(camera.target) - DVec3::from(camera.eye);
-            let light = chart::light(forward.as_vec3().normalize_or(Vec3::NEG_Z)).into();
-            let ambient = stage.ambient.unwrap_or(chart::AMBIENT);
-            Lit { lights: vec![light], ambient, fill_on_undercoat: false }
+        } else if let Shown::Chart(chart) = options.show {
+            let lit = chart::lit(chart, -camera.axes()[2].as_vec3());
+            Lit { ambient: stage.ambient.filter(|_| !plain).unwrap_or(lit.ambient), ..lit }
         } else {
             stage.lit(&subject, &camera)?
         };
@@ -309,6 +252,12 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
             let here = Baldness::of(&hair);
             (baldness.furred, baldness.bald) = (baldness.furred + here.furred, baldness.bald + here.bald);
         }
+        if let Shown::Channel(channel) = options.show {
+            let seen = channel::Seen { renderer: &renderer, scene: &scene, frame: &view, blend: options.blend };
+            let drawn = recorder.step("channel", || channel::draw(channel, &mut prepared, &seen, &picture), |_| 0)?;
+            picture = drawn.0;
+            legend.extend(drawn.1.into_iter().filter(|new| !legend.contains(new)).collect::<Vec<_>>());
+        }
         if counted {
             let cost = recorder.step("cost", || prepared.cost(&view, show, options.blend), |_| 0)?;
             costs.add(&cost, &picture);
@@ -318,7 +267,6 @@ fn shoot(asset: &Asset, coat: &Coat, options: &ViewOptions, viewpoints: &[Viewpo
         }
         pictures.push(picture);
     }
-    let mut legend = legend;
     if counted {
         let [fragments, reads] = costs.per_covered_pixel();
         recorder.mean("fragments_per_covered_pixel", fragments);

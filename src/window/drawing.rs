@@ -6,11 +6,11 @@ use super::model::Model;
 use crate::data::image::Image8;
 use crate::error::{Error, Kind, Result};
 use crate::gpu::{Choice, Gpu};
-use crate::math::{DVec3, Vec3};
+use crate::math::Vec3;
 use crate::runtime::gpu::{Drawn, KeyShadow, PassCost, Passes, Prepared, Renderer};
-use crate::runtime::{Blending, Combing, Frame, Motion, Picture, Show, Spring, Wind, step_texels};
-use crate::stage::light::Lit;
+use crate::runtime::{Combing, DrawList, Frame, Motion, Picture, Show, Spring, Wind, step_texels};
 use crate::viewer::bald::{self, Baldness};
+use crate::viewer::channel;
 use crate::viewer::chart::{self, Chart};
 use crate::viewer::cost::{self, Cost};
 use crate::viewer::{Shown, sitting, stage};
@@ -162,14 +162,9 @@ fn draw_model(
             _ => None,
         };
         let points_m = stage::points_m(&scene);
-        let mut easel = Easel {
-            renderer: &renderer,
-            prepared: renderer.prepare(&scene)?,
-            over_skin,
-            points_m,
-            legend,
-            step_texels,
-        };
+        let prepared = renderer.prepare(&scene)?;
+        let mut easel =
+            Easel { renderer: &renderer, scene: &scene, prepared, over_skin, points_m, legend, step_texels };
         loop {
             answer(easel.draw(&order, gpu));
             match orders.take() {
@@ -187,6 +182,7 @@ fn draw_model(
 /// A pose on the device.
 struct Easel<'a> {
     renderer: &'a Renderer<'a>,
+    scene: &'a DrawList<'a>,
     prepared: Prepared<'a>,
     /// With what is counted for bald skin.
     over_skin: Option<Prepared<'a>>,
@@ -201,22 +197,24 @@ impl Easel<'_> {
         let (model, look) = (&order.model, &order.look);
         let coarse = order.coarseness.max(1);
         let size = look.size.map(|edge| edge.div_ceil(coarse).max(1));
-        let charted = matches!(look.shown, Shown::Chart(_));
-        let lit = if charted { chart_light(look) } else { look.lighting.lit(&model.subject, &look.camera)? };
+        let (lit, shadow_map) = match look.shown {
+            Shown::Chart(chart) => (chart::lit(chart, -look.camera.axes()[2].as_vec3()), false),
+            _ => (look.lighting.lit(&model.subject, &look.camera)?, look.lighting.shadow),
+        };
         let frame = Frame {
-            shadow_map: look.lighting.shadow && !charted,
+            shadow_map,
             level: look.level,
             ..sitting::frame(&look.camera, model.subject.origin_m, &self.points_m, size, lit)
         };
         let show = match look.shown {
             Shown::Coat(show) => show,
             Shown::Chart(_) => Show { skin: true, shells: false, fins: false },
-            Shown::Bald | Shown::Cost => Show::default(),
+            Shown::Channel(_) | Shown::Bald | Shown::Cost => Show::default(),
         };
-        let drawn = self.prepared.draw(&frame, show)?;
+        let drawn = self.prepared.draw_by(&frame, show, look.blend)?;
         let mut legend = self.legend.clone();
         let counted = if order.count || look.shown == Shown::Cost {
-            Some(self.prepared.cost(&frame, show, Blending::Sorted)?)
+            Some(self.prepared.cost(&frame, show, look.blend)?)
         } else {
             None
         };
@@ -229,6 +227,12 @@ impl Easel<'_> {
         if let (Shown::Cost, Some(counted)) = (look.shown, &counted) {
             picture = cost::picture(counted);
             legend.push(format!("texels that a pixel reads: none dark blue, {} and more red", cost::MOST_READS));
+        }
+        if let Shown::Channel(channel) = look.shown {
+            let seen = channel::Seen { renderer: self.renderer, scene: self.scene, frame: &frame, blend: look.blend };
+            let (measured, told) = channel::draw(channel, &mut self.prepared, &seen, &picture)?;
+            picture = measured;
+            legend.extend(told);
         }
         if let Some(over_skin) = &mut self.over_skin {
             let hair = over_skin.hair_over_skin(&frame)?;
@@ -260,11 +264,4 @@ impl Easel<'_> {
             statistics,
         })
     }
-}
-
-/// A chart's own light, which turns with the camera.
-fn chart_light(look: &Look) -> Lit {
-    let forward = DVec3::from(look.camera.target) - DVec3::from(look.camera.eye);
-    let light = chart::light(forward.as_vec3().normalize_or(Vec3::NEG_Z)).into();
-    Lit { lights: vec![light], ambient: chart::AMBIENT, fill_on_undercoat: false }
 }

@@ -4,8 +4,7 @@ use super::comparison::Mode;
 use super::eye::Eye;
 use super::model::Model;
 use super::state::State;
-use crate::runtime::Show;
-use crate::viewer::{Chart, Shown};
+use crate::viewer::CHANNELS;
 use egui::{Key, Modifiers, Ui};
 
 /// Keys and what they do, as the window's help shows them.
@@ -33,19 +32,6 @@ pub const LIST: &[(&str, &str)] = &[
     ("Ctrl + and Ctrl −", "larger, smaller writing"),
     ("?, F1", "this list"),
     ("Ctrl Q", "close"),
-];
-
-/// Channels in the order in which the key goes through them.
-pub const CHANNELS: [(&str, Shown); 9] = [
-    ("coat", Shown::Coat(Show { skin: true, shells: true, fins: true })),
-    ("shells", Shown::Coat(Show { skin: false, shells: true, fins: false })),
-    ("fins", Shown::Coat(Show { skin: false, shells: false, fins: true })),
-    ("skin", Shown::Coat(Show { skin: true, shells: false, fins: false })),
-    ("field", Shown::Chart(Chart::Field)),
-    ("patches", Shown::Chart(Chart::Patches)),
-    ("stretch", Shown::Chart(Chart::Stretch)),
-    ("bald", Shown::Bald),
-    ("cost", Shown::Cost),
 ];
 
 /// What a key asks the window for.

@@ -5,7 +5,7 @@ use crate::data::camera::Camera;
 use crate::data::film::Film;
 use crate::data::image::Image8;
 use crate::math::Vec3;
-use crate::runtime::Combing;
+use crate::runtime::{Blending, Combing};
 use crate::stage::tone::{self, Development};
 use crate::viewer::Shown;
 use rayon::prelude::*;
@@ -36,6 +36,8 @@ pub struct Look {
     pub level: Option<usize>,
     /// How the coat is combed anew.
     pub combing: Combing,
+    /// How shells and fins come together in a pixel.
+    pub blend: Blending,
     /// Of an animation; none in the rest pose.
     pub moment: Option<Moment>,
 }

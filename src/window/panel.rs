@@ -1,16 +1,16 @@
 //! The panel with all controls.
 
 use super::drawing::Statistics;
-use super::keys::CHANNELS;
 use super::lighting::Source;
 use super::model::Model;
 use super::state::State;
 use crate::math::Vec3;
-use crate::runtime::{Combing, OUT_OF_LINE, Spring};
+use crate::runtime::{Blending, Combing, OUT_OF_LINE, Spring};
 use crate::stage::background::Background;
 use crate::stage::rig::Rig;
 use crate::stage::tone::Tone;
-use egui::{CollapsingHeader, ComboBox, Grid, Slider, Ui};
+use crate::viewer::CHANNELS;
+use egui::{CollapsingHeader, ComboBox, Grid, Label, RichText, Slider, Ui};
 
 /// The window itself: colours and size of its writing.
 pub fn window(ui: &mut Ui) {
@@ -34,8 +34,7 @@ pub fn show(ui: &mut Ui, state: &mut State, model: Option<&Model>, statistics: O
 }
 
 fn view(ui: &mut Ui, state: &mut State, model: Option<&Model>) {
-    let shown = CHANNELS.iter().find(|(_, shown)| *shown == state.shown).map_or("several", |(name, _)| name);
-    ComboBox::from_label("channel").selected_text(shown).show_ui(ui, |ui| {
+    ComboBox::from_label("channel").selected_text(state.shown.to_string()).show_ui(ui, |ui| {
         for (name, shown) in CHANNELS {
             ui.selectable_value(&mut state.shown, shown, name);
         }
@@ -45,6 +44,12 @@ fn view(ui: &mut Ui, state: &mut State, model: Option<&Model>) {
     ComboBox::from_label("level of detail").selected_text(name(state.level)).show_ui(ui, |ui| {
         for level in std::iter::once(None).chain((0..levels).map(Some)) {
             ui.selectable_value(&mut state.level, level, name(level));
+        }
+    });
+    let blended = Blending::ALL.iter().find(|(_, way)| *way == state.blend).map_or("", |(name, _)| name);
+    ComboBox::from_label("blending").selected_text(blended).show_ui(ui, |ui| {
+        for (name, way) in Blending::ALL {
+            ui.selectable_value(&mut state.blend, way, name);
         }
     });
     let cameras = model.map_or(&[][..], |model| &model.subject.cameras);
@@ -175,10 +180,11 @@ fn motion(ui: &mut Ui, state: &mut State) {
 fn numbers(ui: &mut Ui, state: &mut State, model: Option<&Model>, statistics: Option<&Statistics>) {
     ui.checkbox(&mut state.open.counting, "count reads (a further pass)");
     let Some(statistics) = statistics else { return };
-    Grid::new("statistics").num_columns(2).show(ui, |ui| {
+    // A long name of an adapter goes on below instead of widening the panel.
+    Grid::new("statistics").num_columns(2).max_col_width(170.0).show(ui, |ui| {
         for (name, value) in rows(state, model, statistics) {
             ui.label(name);
-            ui.monospace(value);
+            ui.add(Label::new(RichText::new(value).monospace()).wrap());
             ui.end_row();
         }
     });

@@ -1,8 +1,9 @@
 //! The panel of a preset's keys, each with its unit, its range and what it does.
 
 use super::edits::Edits;
+use super::sections;
 use crate::preset::keys::{Key, Table, tables};
-use egui::{CollapsingHeader, ComboBox, DragValue, Slider, TextEdit, Ui};
+use egui::{CollapsingHeader, ComboBox, DragValue, IdSalt, Slider, TextEdit, Ui};
 use serde_json::Value;
 use std::sync::LazyLock;
 
@@ -82,6 +83,7 @@ pub fn show(ui: &mut Ui, edits: &Edits, typed: &mut Typed) -> Vec<Wanted> {
             continue;
         }
         let title = if table.name.is_empty() { "preset" } else { &table.name };
+        sections::obey(ui, &sections::named(&table.name), IdSalt::new(("table", title)));
         let header = CollapsingHeader::new(title).id_salt(("table", title));
         let header = if search.is_empty() { header } else { header.open(Some(true)) };
         header.show(ui, |ui| {

@@ -1,12 +1,11 @@
 //! Controls by name, as scripts set them.
 
 use super::comparison::Mode;
-use super::keys::CHANNELS;
 use super::lighting::Source;
 use super::model::Model;
 use super::state::State;
 use crate::error::{Error, Result};
-use crate::runtime::Spring;
+use crate::runtime::{Blending, Spring};
 use crate::stage::camera::{Orbit, Viewpoint};
 use crate::stage::rig::Rig;
 use crate::viewer::parse_show;
@@ -17,11 +16,7 @@ use crate::viewer::parse_show;
 /// [`crate::error::Kind::Usage`] where there is none of that name, or it has no such value.
 pub fn set(state: &mut State, model: Option<&Model>, aspect: f64, name: &str, value: &str) -> Result<()> {
     let number = |low: f64, high: f64| number(name, value, [low, high]);
-    let is_on = || match value {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        _ => Err(fault(name, value, "on or off")),
-    };
+    let is_on = || on_or_off(name, value);
     match name {
         "exposure" => state.development.exposure_ev = number(-8.0, 8.0)? as f32,
         "background" => state.development.background = value.parse()?,
@@ -31,10 +26,12 @@ pub fn set(state: &mut State, model: Option<&Model>, aspect: f64, name: &str, va
         "light.stops" => state.lighting.stops = number(-8.0, 8.0)? as f32,
         "light.shadow" => state.lighting.shadow = is_on()?,
         "sky" => state.lighting.sky = is_on()?,
-        "show" => match CHANNELS.iter().find(|(channel, _)| *channel == value) {
-            Some((_, shown)) => state.shown = *shown,
-            None => state.shown = parse_show(value)?,
-        },
+        "show" => state.shown = parse_show(value)?,
+        "blend" => {
+            let ways = Blending::ALL.iter().find(|(name, _)| *name == value);
+            let names = || Blending::ALL.map(|(name, _)| name).join(", ");
+            state.blend = ways.map(|(_, way)| *way).ok_or_else(|| fault(name, value, &names()))?;
+        }
         "level" if value == "auto" => state.level = None,
         "level" => state.level = Some(number(0.0, 64.0)? as usize),
         "animation" => {
@@ -65,12 +62,24 @@ pub fn set(state: &mut State, model: Option<&Model>, aspect: f64, name: &str, va
         }
         _ => {
             return Err(Error::usage("there is no such control").with_field(name).with_expected(
-                "exposure, background, light, light.turn, light.raise, light.stops, light.shadow, sky, show, level, \
-                 animation, time, speed, play, against, wipe, hair, length, slant, sway, wind, wind.gusts, panel, help, orbit, or preset.KEY",
+                "exposure, background, light, light.turn, light.raise, light.stops, light.shadow, sky, show, level, blend, \
+                 animation, time, speed, play, against, wipe, hair, length, slant, sway, wind, wind.gusts, panel, help, orbit, section.NAME or preset.KEY",
             ));
         }
     }
     Ok(())
+}
+
+/// Whether a control is set to `on` or `off`.
+///
+/// # Errors
+/// [`crate::error::Kind::Usage`] for any other word.
+pub fn on_or_off(name: &str, value: &str) -> Result<bool> {
+    match value {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err(fault(name, value, "on or off")),
+    }
 }
 
 fn source(value: &str) -> Result<Source> {

@@ -5,7 +5,7 @@ use super::eye::Eye;
 use super::lighting::Lighting;
 use super::look::{Look, Moment};
 use super::model::{Animation, Model};
-use crate::runtime::{Combing, Spring, Wind};
+use crate::runtime::{Blending, Combing, Spring, Wind};
 use crate::stage::tone::Development;
 use crate::viewer::Shown;
 
@@ -21,6 +21,8 @@ pub struct State {
     pub shown: Shown,
     /// Level of detail; none to choose by size.
     pub level: Option<usize>,
+    /// How shells and fins come together in a pixel.
+    pub blend: Blending,
     /// Time in an animation.
     pub clock: Clock,
     /// The coat against its hair.
@@ -57,6 +59,7 @@ impl State {
             shown: self.shown,
             level: self.level,
             combing: self.combing,
+            blend: self.blend,
             moment: self.clock.moment(),
         }
     }

@@ -4,10 +4,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use furrier::bake::recipe::Choices;
 use furrier::gpu::Choice;
-use furrier::runtime::{Combing, Show};
+use furrier::runtime::{Blending, Combing, Show};
 use furrier::stage::options::Options;
 use furrier::viewer::Shown;
-use furrier::window::{App, Begin, Wish, loading, script::Script};
+use furrier::window::{App, Begin, Wish, keys, loading, script::Script, sections};
 use std::time::{Duration, Instant};
 
 /// A ball with short, quickly baked hair.
@@ -24,6 +24,7 @@ pub fn begin(subject: loading::Subject) -> Begin {
         shown: Shown::Coat(Show::default()),
         level: None,
         combing: Combing::default(),
+        blend: Blending::Sorted,
         moment: None,
         shadow: true,
         device: Choice::Auto,
@@ -111,4 +112,51 @@ fn a_panel_s_control_is_reached_by_its_label() {
     assert!(!contents.app().state.lighting.shadow);
     contents.settle();
     contents.harness.get_by_label("final");
+}
+
+#[test]
+fn another_blending_is_another_picture() {
+    let weighted = Begin { blend: Blending::Weighted, ..begin(ball()) };
+    let mut contents = Contents::new(weighted);
+    assert_eq!(contents.app().state.blend, Blending::Weighted);
+    let first = contents.harness.render().unwrap();
+    contents.app().state.blend = Blending::Sorted;
+    contents.settle();
+    // Of the picture alone: the panel names the blending too.
+    let second = contents.harness.render().unwrap();
+    let changed = |x: u32, y: u32| first.get_pixel(x, y) != second.get_pixel(x, y);
+    let all = (0..550).flat_map(|x| (0..650).map(move |y| (x, y))).filter(|&(x, y)| changed(x, y)).count();
+    assert!(all > 1000, "{all}");
+}
+
+#[test]
+fn sections_are_opened_and_closed_by_name() {
+    let mut contents = Contents::new(begin(ball()));
+    let steps = |contents: &mut Contents| (0..30).for_each(|_| contents.harness.step());
+    assert!(contents.harness.query_all_by_label("exposure").next().is_some());
+    assert!(contents.harness.query_all_by_label("search").next().is_none());
+    let context = contents.harness.ctx.clone();
+    sections::ask(&context, "light", false).unwrap();
+    sections::ask(&context, "preset.guard", true).unwrap();
+    steps(&mut contents);
+    assert!(contents.harness.query_all_by_label("exposure").next().is_none());
+    for label in ["search", "guard.length.mm"] {
+        assert!(contents.harness.query_all_by_label(label).next().is_some(), "{label}");
+    }
+    let unknown = sections::ask(&context, "warmth", true).unwrap_err();
+    assert!(unknown.expected.unwrap().contains("against the hair"));
+}
+
+#[test]
+fn the_list_of_keys_fits_a_small_window() {
+    let mut contents = Contents::new(begin(ball()));
+    contents.harness.set_size([600.0, 400.0].into());
+    contents.app().state.open.help = true;
+    (0..10).for_each(|_| contents.harness.step());
+    for (key, what) in keys::LIST {
+        for text in [key, what] {
+            let place = contents.harness.get_by_label(text).rect();
+            assert!(place.left() >= 0.0 && place.right() <= 600.0, "{text}: {place:?}");
+        }
+    }
 }

@@ -1,15 +1,17 @@
 //! What is measured of a picture instead of drawn.
 
 use super::layout::ViewUniform;
-use super::measuring::{CostPipelines, DepthPipelines};
+use super::measuring::{self, CostPipelines, DepthPipelines};
 use super::prepared::Prepared;
 use super::resources::GpuFur;
 use super::targets::Targets;
 use super::unsorted;
 use super::{PassCost, Renderer};
 use crate::error::Result;
+use crate::runtime::detail::Detail;
 use crate::runtime::draw_list::{Blending, Frame, Picture, Show};
 use crate::runtime::order::Order;
+use crate::runtime::sight::{Eye, Sighted};
 
 impl Prepared<'_> {
     /// What a picture costs, as a picture: red is how many fragments a pixel runs, green how many texels they read. An anisotropic sampler
@@ -86,5 +88,41 @@ impl Prepared<'_> {
         targets.resolve(&mut encoder, pipelines);
         gpu.finish(encoder)?;
         targets.picture(gpu, view)
+    }
+
+    /// How much hair shadows the skin, as a picture of the skin: red is the optical depth that light from 45 degrees to upright hair meets
+    /// on its way to it, as the skin is shaded by, but however much it is; green is 1 where there is hair.
+    ///
+    /// # Errors
+    /// As [`Self::draw`].
+    pub fn depth_to_skin(&mut self, view: &Frame) -> Result<Picture> {
+        let Renderer { gpu, pipelines, samples, .. } = self.renderer;
+        let drawn = self.depth_to_skin.get_or_init(|| measuring::depth_to_skin(gpu, pipelines));
+        let targets = Targets::new(gpu, pipelines, view.size, *samples)?;
+        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&ViewUniform::new(view, None)));
+        let details: Vec<Detail> = self.levels(view).into_iter().map(|(detail, _)| detail).collect();
+        let group = self.view_group(&[], &targets);
+        let mut encoder = gpu.encoder("depth to skin");
+        self.find_skin(&mut encoder, &targets, &group, &details);
+        // Nothing is before the skin.
+        drop(targets.coat_pass(&mut encoder, "no coat", true, None));
+        let mut pass = targets.skin_pass(&targets, &mut encoder, None);
+        pass.set_bind_group(0, &group, &[]);
+        self.draw_skins(&mut pass, drawn, &details);
+        drop(pass);
+        targets.lay_skin_under(&mut encoder, pipelines);
+        targets.resolve(&mut encoder, pipelines);
+        gpu.finish(encoder)?;
+        targets.picture(gpu, view)
+    }
+
+    /// Of each coat, in the scene's order: which levels a picture shows of it, and how high its longest hair is there, pixels.
+    pub fn levels(&self, view: &Frame) -> Vec<(Detail, f32)> {
+        let eye = Eye::of(view, self.renderer.samples);
+        let of = |fur: &Sighted| {
+            let height_px = fur.height_px(&eye);
+            (fur.detail(height_px, view.level), height_px)
+        };
+        self.sighted().into_iter().map(of).collect()
     }
 }

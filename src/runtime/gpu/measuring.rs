@@ -53,25 +53,41 @@ pub struct CostPipelines {
 impl CostPipelines {
     /// Compiles them.
     pub fn new(gpu: &Gpu, pipelines: &Pipelines) -> Self {
-        let Layouts { view, tile, material, .. } = &pipelines.layouts;
         let targets = [Some(added())];
         let measured = [("MEASURE", 4.0)];
-        let skin = Pass {
-            shader: &pipelines.modules[0],
-            entry: "fragment",
-            groups: &[Some(view), Some(tile), Some(material)],
-            vertices: &[Some(SKIN_VERTICES)],
-            constants: &measured,
-            targets: &targets,
-            depth: Some(Depth::TESTED),
-            samples: EDGE_SAMPLES,
-        };
         let (layouts, modules) = (&pipelines.layouts, &pipelines.modules);
         Self {
-            skin: pipeline(gpu, &skin),
+            skin: skin(gpu, pipelines, &measured, &targets),
             coat: CoatPipelines::new(gpu, layouts, modules, "fragment", &measured, &targets, Depth::TESTED),
         }
     }
+}
+
+/// The pass that finds how much hair is between the skin and light.
+pub fn depth_to_skin(gpu: &Gpu, pipelines: &Pipelines) -> wgpu::RenderPipeline {
+    let target = wgpu::ColorTargetState { format: COLOUR, blend: None, write_mask: wgpu::ColorWrites::ALL };
+    skin(gpu, pipelines, &[("MEASURE", 5.0)], &[Some(target)])
+}
+
+/// A pass of the skin with these constants.
+fn skin(
+    gpu: &Gpu,
+    pipelines: &Pipelines,
+    constants: &[(&str, f64)],
+    targets: &[Option<wgpu::ColorTargetState>],
+) -> wgpu::RenderPipeline {
+    let Layouts { view, tile, material, .. } = &pipelines.layouts;
+    let pass = Pass {
+        shader: &pipelines.modules[0],
+        entry: "fragment",
+        groups: &[Some(view), Some(tile), Some(material)],
+        vertices: &[Some(SKIN_VERTICES)],
+        constants,
+        targets,
+        depth: Some(Depth::TESTED),
+        samples: EDGE_SAMPLES,
+    };
+    pipeline(gpu, &pass)
 }
 
 /// A target to which everything is added.

@@ -38,6 +38,7 @@ pub struct Prepared<'a> {
     /// Made when first asked for.
     pub(super) depths: OnceCell<DepthPipelines>,
     pub(super) costs: OnceCell<CostPipelines>,
+    pub(super) depth_to_skin: OnceCell<wgpu::RenderPipeline>,
     pub(super) weighted: OnceCell<CoatPipelines>,
     pub(super) hashed: OnceCell<CoatPipelines>,
 }
@@ -77,6 +78,7 @@ impl<'a> Prepared<'a> {
             targets: None,
             depths: OnceCell::new(),
             costs: OnceCell::new(),
+            depth_to_skin: OnceCell::new(),
             weighted: OnceCell::new(),
             hashed: OnceCell::new(),
         })
@@ -162,7 +164,8 @@ impl<'a> Prepared<'a> {
             (Some(_), None) => KeyShadow::TooNear,
         };
         let levels = order.details.iter().map(|detail| detail.level());
-        let level = levels.sum::<f32>() / order.details.len().max(1) as f32;
+        // Of no coat the sum would be −0.
+        let level = (0.0 + levels.sum::<f32>()) / order.details.len().max(1) as f32;
         Ok(Drawn { picture, passes, target_bytes, level, height_px: order.height_px, shadow })
     }
 

@@ -5,6 +5,7 @@ mod field;
 mod patches;
 mod shapes;
 mod stretch;
+mod tangents;
 
 use super::stage;
 use crate::asset::{Asset, Part, Pose, Posed};
@@ -16,22 +17,32 @@ use crate::data::patches::Patches;
 use crate::error::Result;
 use crate::math::Vec3;
 use crate::runtime::{DrawList, SkinMesh};
+use crate::stage::light::Lit;
 use std::f32::consts::PI;
 
 /// SkinMesh without fur, linear RGB.
 const BARE: Vec3 = Vec3::splat(0.30);
 /// Light from everywhere: enough that colours keep their meaning in shadow.
-pub const AMBIENT: Vec3 = Vec3::splat(0.5);
+pub(super) const AMBIENT: Vec3 = Vec3::splat(0.5);
 
 /// What is shown of a coat beside itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Chart {
     /// Strokes along the hair, coloured skin for its length, balls where it has no direction.
     Field,
+    /// A colour for each direction of hair.
+    Tangents,
     /// A colour for each patch, with the outline of the tile.
     Patches,
     /// How far the texture is stretched or squeezed.
     Stretch,
+}
+
+impl Chart {
+    /// Whether colours are numbers, to be shown as they are instead of lit.
+    pub fn plain(self) -> bool {
+        self == Self::Tangents
+    }
 }
 
 /// A part in its pose and what it carries.
@@ -73,6 +84,7 @@ pub fn draw<'a>(asset: &'a Asset, coat: &'a Coat, pose: &Pose, chart: Chart, til
     }
     let (more, legend) = match chart {
         Chart::Field => field::draw(&all),
+        Chart::Tangents => tangents::draw(&all),
         Chart::Patches => patches::draw(&all, coat, tile)?,
         Chart::Stretch => stretch::draw(&all, coat)?,
     };
@@ -80,8 +92,16 @@ pub fn draw<'a>(asset: &'a Asset, coat: &'a Coat, pose: &Pose, chart: Chart, til
     Ok(Drawing { scene: DrawList { skins, furs: Vec::new(), tiles: &coat.tiles }, legend })
 }
 
+/// What falls on a chart that is looked at along `forward`, a unit vector.
+pub fn lit(chart: Chart, forward: Vec3) -> Lit {
+    if chart.plain() {
+        return Lit { lights: Vec::new(), ambient: Vec3::ONE, fill_on_undercoat: false };
+    }
+    Lit { lights: vec![light(forward).into()], ambient: AMBIENT, fill_on_undercoat: false }
+}
+
 /// A light over the left shoulder of whoever looks along `forward`.
-pub fn light(forward: Vec3) -> Directional {
+pub(super) fn light(forward: Vec3) -> Directional {
     let right = forward.cross(Vec3::Y).normalize_or(Vec3::X);
     let up = right.cross(forward);
     Directional {

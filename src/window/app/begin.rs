@@ -2,7 +2,7 @@
 
 use crate::bake::recipe::Choices;
 use crate::gpu::Choice;
-use crate::runtime::Combing;
+use crate::runtime::{Blending, Combing};
 use crate::stage::options::Options;
 use crate::viewer::Shown;
 use crate::window::loading::Subject;
@@ -21,6 +21,8 @@ pub struct Begin {
     pub level: Option<usize>,
     /// How the coat is combed anew.
     pub combing: Combing,
+    /// How shells and fins come together in a pixel.
+    pub blend: Blending,
     /// Animation by name or number, and seconds into it.
     pub moment: Option<(String, f64)>,
     /// Whether the key light casts a shadow.

@@ -24,6 +24,7 @@ use super::model::Model;
 use super::panel;
 use super::parameters::Typed;
 use super::script::Script;
+use super::sections;
 use super::state::{Clock, Open, State};
 use super::told::Answers;
 use super::truth::{self, Truth};
@@ -139,6 +140,7 @@ impl App {
                 development: begin.stage.development,
                 shown: begin.shown,
                 level: begin.level,
+                blend: begin.blend,
                 clock: Clock::default(),
                 comparison: Comparison::default(),
                 combing: begin.combing,
@@ -219,7 +221,9 @@ impl App {
         self.bake_when_at_rest();
         Panel::bottom("status").show(ui, |ui| self.status(ui));
         if self.state.open.panel {
-            Panel::right("controls").default_size(310.0).show(ui, |ui| {
+            // Some of the picture is seen in any case.
+            let most = (0.65 * ui.available_width()).max(200.0);
+            Panel::right("controls").default_size(310.0_f32.min(most)).max_size(most).show(ui, |ui| {
                 ScrollArea::vertical().auto_shrink(false).show(ui, |ui| self.panel(ui));
             });
         }
@@ -236,6 +240,9 @@ impl App {
     }
 
     fn panel(&mut self, ui: &mut Ui) {
+        for title in sections::TITLES {
+            sections::obey(ui, &title.to_lowercase(), egui::IdSalt::new(title));
+        }
         let statistics = self.shown.as_ref().map(|shown| &shown.statistics);
         panel::show(ui, &mut self.state, self.model.as_deref(), statistics);
         self.hair_panel(ui);

@@ -3,7 +3,8 @@
 use super::{App, QUIET, Wish};
 use crate::error::Result;
 use crate::window::script::{self, Action};
-use crate::window::set::set;
+use crate::window::sections;
+use crate::window::set::{on_or_off, set};
 use egui::Context;
 use std::sync::Arc;
 use std::time::Instant;
@@ -53,6 +54,10 @@ impl App {
     }
 
     fn set(&mut self, name: &str, value: &str) -> Result<()> {
+        if let Some(section) = name.strip_prefix("section.") {
+            let open = on_or_off(name, value)?;
+            return sections::ask(&self.voice.context, section, open);
+        }
         match name.strip_prefix("preset.") {
             Some(key) => self.set_key(key, value),
             None => set(&mut self.state, self.model.as_deref(), self.aspect, name, value),

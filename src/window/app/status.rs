@@ -37,11 +37,16 @@ impl App {
     }
 
     pub(super) fn help(&mut self, context: &Context) {
-        egui::Window::new("Keys").open(&mut self.state.open.help).resizable(false).show(context, |ui| {
-            egui::Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
+        let room = context.content_rect().size() - egui::vec2(60.0, 100.0);
+        let window = egui::Window::new("Keys").open(&mut self.state.open.help).resizable(false).vscroll(true);
+        let window = window.default_size([room.x.min(620.0), room.y]).max_height(room.y);
+        window.show(context, |ui| {
+            // What does not fit beside its key goes on below.
+            let widest = (0.65 * room.x).min(380.0);
+            egui::Grid::new("keys").num_columns(2).max_col_width(widest).striped(true).show(ui, |ui| {
                 for (key, what) in keys::LIST {
                     ui.strong(*key);
-                    ui.label(*what);
+                    ui.add(egui::Label::new(*what).wrap());
                     ui.end_row();
                 }
             });
