@@ -282,6 +282,11 @@ fn a_screenshot_shows_something_and_options_that_cannot_be_are_refused() {
     assert_eq!(drawn.dimensions(), (64, 48));
     assert!(drawn.pixels().filter(|p| p.0[3] > 128).count() > 300, "hardly anything was drawn");
     view(&["--turntable", "4", "--size", "32x32"]).code(0);
+    view(&["--frames", "3", "--size", "32x32"]).code(0);
+    for frame in ["0001", "0002", "0003"] {
+        let file = picture.with_extension(format!("{frame}.png"));
+        assert!(image::open(&file).is_ok(), "{}", file.display());
+    }
     assert_eq!(image::open(&picture).unwrap().to_rgba8().dimensions(), (64, 64));
     for options in [
         &["--size", "0x5"][..],

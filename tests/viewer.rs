@@ -215,3 +215,33 @@ fn charts_show_what_they_measure() {
     let (leaning, _) = charted(&coat, &asset, Chart::Field, dark);
     assert!(leaning > upright + 0.005, "{upright} {leaning}");
 }
+
+#[test]
+fn a_sequence_plays_an_animation_or_turns_around() {
+    let (asset, coat) = creature();
+    let name = asset.animation_names().into_iter().next().unwrap();
+    let seconds = asset.animation_seconds(asset.animation(&name).unwrap()).unwrap();
+    let taken = |options: &ViewOptions, still: bool| {
+        let mut pictures = Vec::new();
+        let each = &mut |picture: &Picture, image: &furrier::data::image::Image8| {
+            assert_eq!((image.width, image.height), (96, 72));
+            pictures.push(picture.clone());
+            Ok(())
+        };
+        viewer::sequence(&asset, &coat, options, (4, still), each).unwrap();
+        pictures
+    };
+    let at = |time: f64| ViewOptions { moment: Some((name.clone(), time)), ..small() };
+    let shot = |options: &ViewOptions| viewer::screenshot(&asset, &coat, options).unwrap().picture;
+    let played = taken(&at(0.0), false);
+    assert_eq!(played.len(), 4);
+    assert_eq!(played[1], shot(&at(0.25 * seconds)));
+    assert_ne!(played[0], played[1]);
+    let turned = taken(&at(0.25 * seconds), true);
+    assert_eq!(turned[0], played[1]);
+    let Viewpoint::Orbit(orbit) = Viewpoint::default() else { panic!("an orbit") };
+    let half = Viewpoint::Orbit(Orbit { azimuth_deg: orbit.azimuth_deg + 180.0, ..orbit });
+    assert_eq!(turned[2], shot(&ViewOptions { moment: at(0.25 * seconds).moment, ..staged([96, 72], half) }));
+    let many = viewer::sequence(&asset, &coat, &small(), (0, false), &mut |_, _| Ok(())).unwrap_err();
+    assert_eq!(many.parameter.as_deref(), Some("frames"));
+}

@@ -26,6 +26,7 @@ Examples:
   furrier view furry.glb --screenshot furry.png
   furrier view furry.glb --screenshot walk.png --animation Walk --time 0.4 --orbit 70,10,0.8
   furrier view furry.glb --screenshot around.png --turntable 8 --size 256x256
+  furrier view furry.glb --screenshot walk.png --animation Walk --frames 48 --size 512x512
   furrier view furry.glb --screenshot stretch.png --show stretch
   furrier view mat.glb --screenshot box.png --occluder box.obj --light dir:-1,-2,0:3,3,3
   furrier view furry.glb --screenshot fins.png --show skin,fins --light dir:0,-1,-1:3,3,3 --ambient 0.2,0.2,0.2
@@ -84,6 +85,10 @@ pub struct View {
     /// Draw a contact sheet of N views around the asset, 1 to 64; --size is that of one
     #[arg(long, value_name = "N", requires = "screenshot")]
     turntable: Option<u32>,
+    /// Draw N pictures, 1 to 9999, as OUT.0001.png and so on: over the length of the animation, or, without one or in the pose
+    /// that --time says, around the asset
+    #[arg(long, value_name = "N", requires = "screenshot", conflicts_with = "turntable")]
+    frames: Option<u32>,
     /// The adapter to draw with
     #[arg(long, value_name = "auto|gpu[:NAME]", default_value = "auto")]
     device: String,
@@ -138,6 +143,9 @@ impl View {
         if let Some(report) = &self.report {
             output::check(report, &[&read[..], &[screenshot]].concat())?;
         }
+        if let Some(frames) = self.frames {
+            return self.film(frames, (screenshot, format), &options, &read, console);
+        }
         let (asset, coat) = self.subject(console)?;
         let shot = match self.turntable {
             Some(views) => viewer::turntable(&asset, &coat, &options, views)?,
@@ -158,6 +166,38 @@ impl View {
             "report": shot.report,
         });
         console.result(&outcome, |out| writeln!(out, "{}: {width} × {height}, drawn by {device}", screenshot.display()))
+    }
+
+    /// Draws pictures one after another, each a file of its own.
+    fn film(
+        &self,
+        frames: u32,
+        (screenshot, format): (&Path, Format),
+        options: &ViewOptions,
+        read: &[&Path],
+        console: &Console,
+    ) -> Result<()> {
+        let numbered = |i: u32| {
+            let extension = screenshot.extension().unwrap_or_default().to_string_lossy();
+            screenshot.with_extension(format!("{i:04}.{extension}"))
+        };
+        (1..=frames).try_for_each(|i| output::check(&numbered(i), read).map(drop))?;
+        let (asset, coat) = self.subject(console)?;
+        let mut i = 0;
+        let told = viewer::sequence(&asset, &coat, options, (frames, self.time.is_some()), &mut |picture, image| {
+            i += 1;
+            output::bytes(&numbered(i), &viewer::encode(picture, image, format)?).map(drop)
+        })?;
+        let (legend, notes, report) = (told.legend, told.notes, told.recorder.finish());
+        if let Some(file) = &self.report {
+            output::json(file, &report)?;
+        }
+        legend.iter().chain(&notes).for_each(|line| console.note(line));
+        let (first, last) = (numbered(1), numbered(frames));
+        let outcome = json!({ "frames": frames, "first": first, "last": last, "legend": legend, "notes": notes, "report": report });
+        console.result(&outcome, |out| {
+            writeln!(out, "{} to {}: {frames} pictures, drawn by {}", first.display(), last.display(), report.device)
+        })
     }
 
     /// Whether the input is baked first.
