@@ -29,9 +29,7 @@ use crate::coat::measures::Measures;
 use crate::coat::seams::{WINDOWS, before_after};
 use crate::coat::summary::draw_calls_note;
 use crate::data::coat::{Blend, Coat, CoatPrimitive, Tile};
-use crate::data::mesh::Mesh;
 use crate::error::{Error, Result};
-use crate::fur::field::{FieldSource, directions};
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::patch::{Parameterisation, need_uv_set, parameterise};
 use crate::metrics::timing;
@@ -239,12 +237,7 @@ impl Task<'_> {
     /// The skin with this preset's fields, all of it: what has no hair is part of the surface.
     fn groom(&self, preset: &Preset, steps: &mut Steps<'_>) -> Result<Groomed> {
         let role = |part: usize| if self.parts.contains(&part) { Role::Furred } else { Role::Aside };
-        steps.around("groom", |steps| {
-            let comb = |mesh: &Mesh, sources: &[FieldSource]| {
-                steps.kept("comb", &(mesh, sources), |_| directions(mesh, sources))
-            };
-            skin::groom(self.asset, self.skin, role, preset, self.scale, comb)
-        })
+        steps.around("groom", |steps| skin::groom(self.asset, self.skin, role, preset, self.scale, steps))
     }
 
     /// What some of the task's parts are called.

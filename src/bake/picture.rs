@@ -1,6 +1,7 @@
 //! A picture of an asset's fur by the hybrid renderer, without baking it.
 
 use super::skin::{self, Groomed, Role};
+use super::steps::Steps;
 use super::unfollowed::variants;
 use super::units::{self, Units};
 use super::weld;
@@ -12,7 +13,6 @@ use crate::data::camera::Camera;
 use crate::data::film::Film;
 use crate::data::subject::Subject;
 use crate::error::Result;
-use crate::fur::field::directions;
 use crate::fur::groom::fibre::Fibre;
 use crate::fur::groom::refine::{Finest, refine};
 use crate::fur::grow;
@@ -111,7 +111,7 @@ impl Grown {
         let furred = |part: usize| chosen.contains(&part);
         let skin = weld::join(&asset, furred, scale.metres_per_unit, fibre.length_m)?;
         let role = |part: usize| if furred(part) { Role::Furred } else { Role::Bare };
-        let whole = skin::groom(&asset, &skin, role, preset, &scale, directions)?;
+        let whole = skin::groom(&asset, &skin, role, preset, &scale, &mut Steps::new(&mut |_| (), None))?;
         let hair_m = reaches_m(&asset, &whole, tile.height_m);
         let groomed = shown(&asset, whole, pose.as_ref(), scale.metres_per_unit)?;
         notes.extend(groomed.notes.iter().cloned());

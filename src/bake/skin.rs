@@ -1,6 +1,7 @@
 //! The skin made ready for fur: its mesh in metres, what is painted on it and the fields over it.
 
 use super::comb::{comb, partings};
+use super::steps::Steps;
 use super::units::Scale;
 use super::weld::Skin;
 use crate::asset::material::BaseColour;
@@ -13,8 +14,10 @@ use crate::data::mesh::Mesh;
 use crate::data::paint::{Paint, Painted};
 use crate::data::texture::Texture;
 use crate::error::Result;
-use crate::fur::field::{DirectionField, FieldSource, Singularity};
+use crate::fur::field::{FieldSource, Singularity, directions};
 use crate::fur::groom::fibre::Fibre;
+use crate::fur::groom::lean::Standing;
+use crate::fur::groom::unfold::unfold;
 use crate::fur::groom::{ColourSource, fields, parted};
 use crate::math::{Mat3, Vec3, Vec4};
 use crate::preset::{self, Preset};
@@ -46,8 +49,7 @@ pub enum Role {
     Aside,
 }
 
-/// Gathers everything that decides how hair lies on `skin`, whose parts have these roles. `directions` makes the comb: see
-/// [`comb`].
+/// Gathers everything that decides how hair lies on `skin`, whose parts have these roles.
 ///
 /// # Errors
 /// When a map or texture cannot be read, or the comb's sources make no sense.
@@ -57,18 +59,27 @@ pub fn groom(
     role: impl Fn(usize) -> Role,
     preset: &Preset,
     scale: &Scale,
-    directions: impl FnOnce(&Mesh, &[FieldSource]) -> Result<DirectionField>,
+    steps: &mut Steps<'_>,
 ) -> Result<Groomed> {
     let mut notes = Vec::new();
     let maps = Arc::new(decode(&preset.maps)?);
     let paint = paint(asset, skin, &role, preset, &maps, &mut notes)?;
+    let directions =
+        |mesh: &Mesh, sources: &[FieldSource]| steps.kept("comb", &(mesh, sources), |_| directions(mesh, sources));
     let comb = comb(asset, &skin.mesh, &preset.groom, &maps, scale, &mut notes, directions)?;
     let diagonal_m = scale.diagonal_m as f32;
     let guard = Fibre::guard(&preset.guard, &preset.colour, diagonal_m);
     let undercoat = Fibre::undercoat(&preset.undercoat, &preset.colour, diagonal_m);
     // Undercoat must not cross, as it is a volume; single guard hairs may.
     let height_m = if undercoat.height_m() > 0.0 { undercoat.height_m() } else { guard.height_m() };
-    let mut fields = fields::gather(&skin.mesh, &preset.groom, paint, comb.direction, height_m);
+    let unfolded = |standing: &Standing, lean: Vec<Vec3>, length: Vec<f32>| {
+        steps.kept("lean", &(&skin.mesh, height_m, &lean, &length), |_| {
+            let (mut lean, mut length) = (lean.clone(), length.clone());
+            unfold(&skin.mesh, standing, height_m, &mut lean, &mut length);
+            Ok((lean, length))
+        })
+    };
+    let mut fields = fields::gather(&skin.mesh, &preset.groom, paint, comb.direction, unfolded)?;
     parted::part(&skin.mesh, partings(asset, &preset.groom, scale), height_m, &mut fields);
     Ok(Groomed { fields, skin: skin.clone(), singularities: comb.singularities, notes })
 }

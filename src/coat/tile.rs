@@ -28,7 +28,7 @@ pub struct TileRecipe {
     pub lean_deg: f32,
     /// How its hair is lit; `undercoat_share` is filled in by the bake.
     pub looks: Option<TileLooks>,
-    /// Whether it is to look at until a better one is there: its opacity is measured by few rays.
+    /// Whether it is to look at until a better one is there: its opacity is measured by few rays, and it has no coarser levels.
     pub draft: bool,
 }
 
@@ -75,6 +75,8 @@ pub fn bake(hair: &TileHair, recipe: &TileRecipe) -> Tile {
 pub fn bake_with(hair: &TileHair, recipe: &TileRecipe, told: &mut RaysTold) -> Tile {
     let lean = leaning(recipe.lean_deg);
     let counts = std::iter::successors(Some(recipe.shells.layers as usize - 1), |&n| (n > 1).then_some(n / 2));
+    // A draft is gone before anybody looks at it from afar.
+    let counts = counts.take(if recipe.draft { 1 } else { usize::MAX });
     let by_height = ByHeight::new(hair);
     let cut = |(level, count)| if level == 0 { Slabs::even(count) } else { by_height.cut(count) };
     let cuts: Vec<Slabs> = counts.enumerate().map(cut).collect();

@@ -6,8 +6,8 @@ use egui::collapsing_header::CollapsingState;
 use egui::{Context, Id, IdSalt, Ui, UiBuilder};
 
 /// Titles of the panel's sections, from the top.
-pub const TITLES: [&str; 8] =
-    ["View", "Light", "Animation", "Motion", "Statistics", "Against the hair", "Preset", "Window"];
+pub const TITLES: [&str; 9] =
+    ["View", "Light", "Animation", "Comb", "Motion", "Statistics", "Against the hair", "Preset", "Window"];
 
 /// What was asked for and is not drawn yet: a name, and whether it is to be open.
 type Asked = Vec<(String, bool)>;

@@ -25,7 +25,7 @@ impl Answers {
 }
 
 /// From a change of the preset to a coat of it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Took {
     /// Until it was baked, ms.
     pub baked_ms: Option<f64>,

@@ -2,29 +2,38 @@
 
 use super::Groom;
 use super::lean::{Standing, lean};
-use super::unfold::unfold;
 use crate::data::fields::Fields;
 use crate::data::mesh::Mesh;
 use crate::data::paint::{Paint, Painted, PaintedPoint};
+use crate::error::Result;
 use crate::math::Vec3;
 use std::sync::Arc;
 
 /// Gathers the fields.
 ///
-/// `comb` is a unit tangent per vertex, zero where the hair stands upright; `paint` what is painted on the mesh; `height_m` that of
-/// the hair that is combed so that it does not cross, m. Lengths are the longest that are painted around a vertex.
-pub fn gather(mesh: &Mesh, groom: &Groom, mut paint: Paint, comb: Vec<Vec3>, height_m: f32) -> Fields {
+/// `comb` is a unit tangent per vertex, zero where the hair stands upright; `paint` what is painted on the mesh; `unfold` combs leans and
+/// lengths so that hair does not cross ([`unfold`](super::unfold::unfold)). Lengths are the longest that are painted around a vertex.
+///
+/// # Errors
+/// As `unfold`.
+pub fn gather(
+    mesh: &Mesh,
+    groom: &Groom,
+    mut paint: Paint,
+    comb: Vec<Vec3>,
+    unfold: impl FnOnce(&Standing, Vec<Vec3>, Vec<f32>) -> Result<(Vec<Vec3>, Vec<f32>)>,
+) -> Result<Fields> {
     let count = mesh.positions_m.len();
     let standing = Standing::new(mesh);
     paint.find_longest(mesh);
     let attribute = |v: usize| mesh.fur_length.as_ref().map_or(1.0, |length| length[v].max(0.0));
-    let mut length: Vec<f32> = (0..count).map(|v| attribute(v) * paint.longest[v]).collect();
+    let length: Vec<f32> = (0..count).map(|v| attribute(v) * paint.longest[v]).collect();
     let class = |v: usize| mesh.position_class[v] as usize;
-    let mut lean: Vec<Vec3> =
+    let lean: Vec<Vec3> =
         (0..count).map(|v| standing.raised(v, class(v), lean(groom, standing.normals[v], comb[v]))).collect();
-    unfold(mesh, &standing, height_m, &mut lean, &mut length);
+    let (lean, length) = unfold(&standing, lean, length)?;
     let painted: Vec<PaintedPoint> = (0..count).map(|v| paint.at_vertex(mesh, v)).collect();
-    Fields {
+    Ok(Fields {
         length,
         lean,
         density: painted.iter().map(|p| p.density).collect(),
@@ -33,5 +42,5 @@ pub fn gather(mesh: &Mesh, groom: &Groom, mut paint: Paint, comb: Vec<Vec3>, hei
         tint: painted.iter().map(|p| p.tint).collect(),
         paint: paint.parts.iter().any(Painted::varies).then(|| Arc::new(paint)),
         partings: Vec::new(),
-    }
+    })
 }

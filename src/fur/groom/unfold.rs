@@ -31,6 +31,8 @@ struct SkinGraph<'a> {
     triangles: Vec<[u32; 3]>,
     /// Neighbours of each vertex that stands for a place, each as often as triangles hold both.
     around: Vec<Vec<u32>>,
+    /// Its triangles.
+    of: Vec<Vec<u32>>,
 }
 
 /// Changes `lean`, and where that does not help `length`, so that hair `height_m` tall times its length does not cross.
@@ -38,14 +40,16 @@ struct SkinGraph<'a> {
 pub fn unfold(mesh: &Mesh, standing: &Standing, height_m: f32, lean: &mut [Vec3], length: &mut [f32]) {
     let triangles: Vec<[u32; 3]> = mesh.triangles.iter().map(|t| t.map(|v| mesh.position_class[v as usize])).collect();
     let mut around = vec![Vec::new(); lean.len()];
-    for &[a, b, c] in &triangles {
+    let mut of = vec![Vec::new(); lean.len()];
+    for (t, &[a, b, c]) in (0..).zip(&triangles) {
         for [v, p, q] in [[a, b, c], [b, c, a], [c, a, b]] {
             around[v as usize].extend([p, q]);
+            of[v as usize].push(t);
         }
     }
-    let skin = SkinGraph { mesh, height_m, triangles, around };
+    let skin = SkinGraph { mesh, height_m, triangles, around, of };
+    let mut crossing = skin.crossing(&skin.triangles, lean, length);
     for round in 0..ROUNDS {
-        let crossing = skin.crossing(lean, length);
         if crossing.is_empty() {
             break;
         }
@@ -57,13 +61,15 @@ pub fn unfold(mesh: &Mesh, standing: &Standing, height_m: f32, lean: &mut [Vec3]
         };
         let averages: Vec<Vec3> = reached.par_iter().map(average).collect();
         reached.iter().zip(averages).for_each(|(&v, average)| lean[v as usize] = average);
+        crossing = skin.crossing(&skin.touched(&reached), lean, length);
     }
     for _ in 0..MOST_SHORTENINGS {
-        let crossing = skin.crossing(lean, length);
         if crossing.is_empty() {
             break;
         }
-        skin.reached(&crossing, 0).iter().for_each(|&v| length[v as usize] *= SHORTER);
+        let reached = skin.reached(&crossing, 0);
+        reached.iter().for_each(|&v| length[v as usize] *= SHORTER);
+        crossing = skin.crossing(&skin.touched(&reached), lean, length);
     }
     for (v, &class) in mesh.position_class.iter().enumerate() {
         (lean[v], length[v]) = (lean[class as usize], length[class as usize]);
@@ -71,8 +77,8 @@ pub fn unfold(mesh: &Mesh, standing: &Standing, height_m: f32, lean: &mut [Vec3]
 }
 
 impl SkinGraph<'_> {
-    /// Triangles over which hair crosses.
-    fn crossing(&self, lean: &[Vec3], length: &[f32]) -> Vec<[u32; 3]> {
+    /// Those of `triangles` over which hair crosses.
+    fn crossing(&self, triangles: &[[u32; 3]], lean: &[Vec3], length: &[f32]) -> Vec<[u32; 3]> {
         let crosses = |corners: &[u32; 3]| {
             let corners = corners.map(|v| v as usize);
             let foot_m = corners.map(|v| self.mesh.positions_m[v]);
@@ -84,7 +90,15 @@ impl SkinGraph<'_> {
             let least = area(0.0) * LEAST_AREA;
             TRIED.iter().any(|&t| corners.iter().any(|&v| (area(t) - least).dot(lean[v]) < 0.0))
         };
-        self.triangles.par_iter().filter(|corners| crosses(corners)).copied().collect()
+        triangles.par_iter().filter(|corners| crosses(corners)).copied().collect()
+    }
+
+    /// Triangles with a corner among `vertices`. Hair over others is as it was; where it crossed, all corners are changed.
+    fn touched(&self, vertices: &[u32]) -> Vec<[u32; 3]> {
+        let mut touched: Vec<u32> = vertices.iter().flat_map(|&v| &self.of[v as usize]).copied().collect();
+        touched.sort_unstable();
+        touched.dedup();
+        touched.into_iter().map(|t| self.triangles[t as usize]).collect()
     }
 
     /// The corners of triangles and what lies up to some rings around them.

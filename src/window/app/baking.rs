@@ -16,6 +16,8 @@ use std::time::{Duration, Instant};
 
 /// How long the hand must rest before the final coat is baked.
 const RESTS: Duration = Duration::from_millis(350);
+/// How long the final coat waits at most for the coarse one to be seen.
+const SKETCHED: Duration = Duration::from_millis(1500);
 /// Texels along an edge of a coarse coat's tile, and its layers, at most.
 const COARSE: [u32; 2] = [32, 6];
 /// Texels of a coarse coat's fins, along the skin and up, at most.
@@ -34,8 +36,8 @@ pub(super) struct Baking {
     pub(super) took: [Took; 2],
     /// These coats.
     came: [Option<Arc<Model>>; 2],
-    /// What the steps of the final one took.
-    pub(super) steps: timing::Steps,
+    /// What their steps took.
+    pub(super) steps: [timing::Steps; 2],
     /// When the last change was.
     began: Option<Instant>,
 }
@@ -51,7 +53,7 @@ impl Baking {
             ordered: None,
             took: [Took::default(); 2],
             came: [None, None],
-            steps: timing::Steps::default(),
+            steps: Default::default(),
             began: None,
         })
     }
@@ -76,13 +78,13 @@ impl Baking {
         let wanted = self.ordered.as_deref() == recipe && self.touched.is_none();
         if wanted {
             self.ordered = None;
-            self.came(1, model);
-            self.steps = steps;
+            self.came(1, model, steps);
         }
         wanted
     }
 
-    fn came(&mut self, which: usize, model: &Arc<Model>) {
+    fn came(&mut self, which: usize, model: &Arc<Model>, steps: timing::Steps) {
+        self.steps[which] = steps;
         self.took[which].baked(self.began);
         self.came[which] = Some(Arc::clone(model));
     }
@@ -218,7 +220,7 @@ impl App {
         }
         match ready {
             Ok(ready) => {
-                self.baking.came(0, &ready.model);
+                self.baking.came(0, &ready.model, ready.steps);
                 self.look_at(ready.model);
             }
             Err(error) => self.trouble = Some(error),
@@ -228,7 +230,10 @@ impl App {
     /// Orders the final coat once the hand rests.
     pub(super) fn bake_when_at_rest(&mut self) {
         let Some(touched) = self.baking.touched else { return };
-        match RESTS.checked_sub(touched.elapsed()) {
+        // The coarse coat is seen first, or both would share the processor and come late.
+        let sketched = self.baking.took[0].seen_ms.is_some();
+        let rests = if sketched { RESTS } else { SKETCHED };
+        match rests.checked_sub(touched.elapsed()) {
             Some(left) if !left.is_zero() => self.voice.context.request_repaint_after(left),
             _ => {
                 let Some(edits) = &self.edits else { return };

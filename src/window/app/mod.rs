@@ -23,7 +23,7 @@ use super::mailbox::Sender;
 use super::model::Model;
 use super::panel;
 use super::parameters::Typed;
-use super::script::Script;
+use super::script::{Action, Script};
 use super::sections;
 use super::state::{Clock, Open, State};
 use super::told::Answers;
@@ -232,9 +232,10 @@ impl App {
         if self.state.clock.playing || self.state.spring.is_some() {
             context.request_repaint();
         }
-        if !self.script.0.is_empty() {
-            // The script goes on, though nothing else happens.
-            context.request_repaint_after(Duration::from_millis(20));
+        if let Some(next) = self.script.0.front() {
+            // The script goes on, though nothing else happens. Who waits leaves the processor to what is waited for.
+            let waits = matches!(next, Action::Wait(_));
+            context.request_repaint_after(Duration::from_millis(if waits { 100 } else { 5 }));
         }
         wishes
     }

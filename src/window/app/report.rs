@@ -9,7 +9,7 @@ use std::path::Path;
 
 impl App {
     /// Writes it as JSON: how quickly the window answered since the last report; from the last change of the preset to its coarse and its final
-    /// coat, and what the steps of that one took; the statistics and the comparison as the panel has them.
+    /// coat, and what their steps took; the statistics and the comparison as the panel has them.
     ///
     /// # Errors
     /// Where the file cannot be written.
@@ -19,10 +19,13 @@ impl App {
             None => BTreeMap::new(),
         };
         let comparison: Option<BTreeMap<_, _>> = self.comparison().map(|judged| judged.rows().into_iter().collect());
-        let [coarse, last] = self.baking.took;
+        let [coarse, last] = [0, 1].map(|which| {
+            let (took, steps) = (&self.baking.took[which], &self.baking.steps[which]);
+            json!({ "baked_ms": took.baked_ms, "seen_ms": took.seen_ms, "steps": steps })
+        });
         let told = json!({
             "answers": std::mem::take(&mut self.answers),
-            "change": { "coarse": coarse, "final": last, "steps": self.baking.steps },
+            "change": { "coarse": coarse, "final": last },
             "statistics": statistics,
             "comparison": comparison,
         });
