@@ -14,10 +14,31 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 
-# README.md
+# README.md, docs/window.md
 "$furrier" bake sample:creature -o creature.glb --preset fox
 "$furrier" view creature.glb --screenshot "$images/creature.png" --orbit 50,10,1 --size 800x640
-printf 'resize 800 520\nwait\npicture %s\nquit\n' "$images/window.png" > window.txt
+cat > window.txt <<END
+resize 800 520
+wait
+picture $images/window.png
+set section.view off
+set section.light off
+set section.animation off
+set section.preset on
+set section.preset.guard on
+set section.preset.guard.shape on
+wait
+picture $images/window-parameters.png
+set against wipe
+set section.preset off
+set section.against-the-hair on
+wait
+picture $images/window-wipe.png
+set against error map
+wait
+picture $images/window-error.png
+quit
+END
 if command -v xvfb-run >/dev/null; then
     xvfb-run -a "$furrier" view sample:creature --preset fox --orbit 50,10,1.25 --script window.txt
 fi

@@ -16,12 +16,12 @@ fn asked() -> Id {
     Id::unique("sections that a script asked for")
 }
 
-/// Opens or closes the section of this name the next time that it is drawn: a title in small letters, or `preset.TABLE`.
+/// Opens or closes the section of this name the next time that it is drawn: a title as [`called`], or `preset.TABLE`.
 ///
 /// # Errors
 /// [`crate::error::Kind::Usage`] where there is none, with those that there are.
 pub fn ask(context: &Context, name: &str, open: bool) -> Result<()> {
-    let titles = TITLES.iter().map(|title| title.to_lowercase());
+    let titles = TITLES.iter().map(|title| called(title));
     let tables = tables().into_iter().map(|table| named(&table.name));
     let names: Vec<String> = titles.chain(tables).collect();
     if !names.iter().any(|known| known == name) {
@@ -34,6 +34,11 @@ pub fn ask(context: &Context, name: &str, open: bool) -> Result<()> {
     let all = within.into_iter().chain([name.to_owned()]).map(|name| (name, open));
     context.data_mut(|data| data.get_temp_mut_or_default::<Asked>(asked()).extend(all));
     Ok(())
+}
+
+/// What scripts call a section: one word.
+pub fn called(title: &str) -> String {
+    title.to_lowercase().replace(' ', "-")
 }
 
 /// What a table of the preset is called among sections.

@@ -242,7 +242,7 @@ impl App {
 
     fn panel(&mut self, ui: &mut Ui) {
         for title in sections::TITLES {
-            sections::obey(ui, &title.to_lowercase(), egui::IdSalt::new(title));
+            sections::obey(ui, &sections::called(title), egui::IdSalt::new(title));
         }
         let statistics = self.shown.as_ref().map(|shown| &shown.statistics);
         panel::show(ui, &mut self.state, self.model.as_deref(), statistics);
