@@ -26,7 +26,8 @@ fn length(p: Vec3) -> Vec3 {
 /// A leopard's coat in sRGB: rosettes on the back, rings on legs and tail, a pale belly.
 fn leopard(p: Vec3) -> Vec3 {
     let (ground, belly, dark) = (Vec3::new(0.86, 0.64, 0.34), Vec3::new(0.93, 0.88, 0.79), Vec3::new(0.16, 0.10, 0.06));
-    let pale = smoothstep(0.17, 0.13, p.y) * smoothstep(0.10, 0.05, p.x.abs());
+    // The belly, not the legs below it.
+    let pale = smoothstep(0.17, 0.13, p.y) * smoothstep(0.09, 0.12, p.y) * smoothstep(0.055, 0.03, p.x.abs());
     // Distance to the nearest of points strewn one to a cell, in cells.
     let at = p / 0.042;
     let mut nearest = f32::INFINITY;
@@ -40,7 +41,7 @@ fn leopard(p: Vec3) -> Vec3 {
     let ring = smoothstep(0.18, 0.26, nearest) * smoothstep(0.50, 0.42, nearest);
     let inside = smoothstep(0.30, 0.15, nearest);
     let base = ground.lerp(belly, pale).lerp(ground * 0.78, 0.8 * inside);
-    base.lerp(dark, ring * (1.0 - 0.8 * pale))
+    base.lerp(dark, ring * (1.0 - 0.4 * pale))
 }
 
 /// A picture whose texels are `colour` of the place on the body that they lie on; around charts it goes on with what is next.

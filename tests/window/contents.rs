@@ -144,7 +144,7 @@ fn sections_are_opened_and_closed_by_name() {
         assert!(contents.harness.query_all_by_label(label).next().is_some(), "{label}");
     }
     let unknown = sections::ask(&context, "warmth", true).unwrap_err();
-    assert!(unknown.expected.unwrap().contains("against the hair"));
+    assert!(unknown.expected.unwrap().contains("against-the-hair"));
 }
 
 #[test]
