@@ -59,6 +59,7 @@ fn tile_of(preset: &Preset) -> Tile {
         skin: Vec3::from(preset.colour.skin),
         lean_deg: preset.groom.lean_deg,
         looks: None,
+        draft: false,
     };
     bake(&hair, &recipe)
 }

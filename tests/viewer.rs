@@ -243,5 +243,5 @@ fn a_sequence_plays_an_animation_or_turns_around() {
     let half = Viewpoint::Orbit(Orbit { azimuth_deg: orbit.azimuth_deg + 180.0, ..orbit });
     assert_eq!(turned[2], shot(&ViewOptions { moment: at(0.25 * seconds).moment, ..staged([96, 72], half) }));
     let many = viewer::sequence(&asset, &coat, &small(), (0, false), &mut |_, _| Ok(())).unwrap_err();
-    assert_eq!(many.parameter.as_deref(), Some("frames"));
+    assert_eq!(many.parameter, Some("frames"));
 }

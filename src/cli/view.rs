@@ -254,6 +254,10 @@ impl View {
             script,
         })
         .map_err(|error| {
+            // Who has no adapter has none for pictures either.
+            if crate::gpu::adapters().is_empty() {
+                return error;
+            }
             let instead = "write a picture, which needs no window: `--screenshot OUT.png`";
             match (error.kind, error.hint.clone()) {
                 (Kind::Device, Some(hint)) => error.with_hint(format!("{hint}; or {instead}")),

@@ -22,7 +22,9 @@ impl Gpu {
         make: impl FnOnce(&wgpu::Instance) -> Result<wgpu::Surface<'window>>,
     ) -> Result<(Self, Screen<'window>)> {
         let instance = adapter::instance();
-        let surface = make(&instance)?;
+        // Without any adapter no surface can be made: then that is what is missing.
+        let surface =
+            make(&instance).or_else(|error| adapter::choose(&instance, choice, None).and_then(|_| Err(error)))?;
         let (adapter, handle) = adapter::choose(&instance, choice, Some(&surface))?;
         let configuration = surface.get_default_config(&handle, 1, 1).ok_or_else(|| {
             Error::new(Kind::Device, "the window offers no format to draw in").with_found(adapter.to_string())
