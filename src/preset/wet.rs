@@ -20,7 +20,7 @@ pub struct Wet {
     pub lock_mm: f32,
     /// Mean lean of soaked hair, where it does not lean more when dry.
     #[schemars(range(min = 0.0, max = 75.0))]
-    pub lean_deg: f32,
+    pub soaked_lean_deg: f32,
     /// How much of the fibre's roughness and of its scales' tilt a whole film takes away.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub gloss: f32,
@@ -28,7 +28,7 @@ pub struct Wet {
 
 impl Default for Wet {
     fn default() -> Self {
-        Self { amount: 0.0, lock_mm: 6.0, lean_deg: 62.0, gloss: 0.6 }
+        Self { amount: 0.0, lock_mm: 6.0, soaked_lean_deg: 62.0, gloss: 0.6 }
     }
 }
 
@@ -69,7 +69,7 @@ impl Preset {
         // A lock ends in a point that lets nothing through.
         preset.guard.tip_transparency = towards(self.guard.tip_transparency, 0.0);
         let groom = &mut preset.groom;
-        groom.lean_deg = towards(groom.lean_deg, groom.lean_deg.max(wet.lean_deg));
+        groom.lean_deg = towards(groom.lean_deg, groom.lean_deg.max(wet.soaked_lean_deg));
         groom.gravity = towards(groom.gravity, groom.gravity.max(GRAVITY));
         preset.colour.skin = self.colour.skin.map(|factor| wet.film().darkened(factor));
         preset
