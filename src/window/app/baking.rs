@@ -14,6 +14,8 @@ use egui::Ui;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+/// The number of a change that nobody made.
+const NOBODYS: u64 = u64::MAX;
 /// How long the hand must rest before the final coat is baked.
 const RESTS: Duration = Duration::from_millis(350);
 /// How long the final coat waits at most for the coarse one to be seen.
@@ -211,6 +213,14 @@ impl App {
             recipe,
             change: baking.change,
         });
+    }
+
+    /// Bakes a draft that nobody sees, so that what rays tell of it is there when the first change comes.
+    pub(super) fn warm(&self) {
+        let Some(edits) = &self.edits else { return };
+        let recipe = Box::new(coarse(edits.recipe()));
+        let (subject, bare) = (self.subject.clone(), self.bare.clone());
+        self.baking.sketches.put(Sketch { subject, bare, recipe, change: NOBODYS });
     }
 
     pub(super) fn sketched(&mut self, change: u64, ready: Result<Ready>) {

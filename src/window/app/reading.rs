@@ -96,6 +96,7 @@ impl App {
                 if read {
                     self.edits = recipe.map(Edits::new);
                     self.baking.forget();
+                    self.warm();
                 } else if !self.baking.settled(recipe.as_deref(), &model, steps) {
                     // It was changed again meanwhile.
                     return;
