@@ -14,7 +14,7 @@ pub mod subject;
 
 pub use channel::Channel;
 pub use chart::Chart;
-pub use shoot::{Take, Told, shoot};
+pub use shoot::Told;
 pub use shown::{CHANNELS, Shown, parse_show};
 
 use crate::asset::Asset;
@@ -27,6 +27,7 @@ use crate::runtime::{Blending, Combing, Picture};
 use crate::stage::camera::{Orbit, Viewpoint};
 use crate::stage::file::Format;
 use crate::stage::{exr, options, png, tone};
+use shoot::{Take, shoot};
 
 /// How to look at a coat.
 #[derive(Clone, Debug)]

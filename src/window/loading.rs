@@ -3,7 +3,7 @@
 use super::mailbox::{Receiver, Sender, mailbox};
 use super::model::Model;
 use crate::asset::coat::read_coat_as;
-use crate::asset::{self, Reading};
+use crate::asset::{self, Asset, Reading};
 use crate::bake::recipe::{Choices, Recipe, split_choice};
 use crate::bake::seen::seen;
 use crate::bake::units;
@@ -44,7 +44,7 @@ pub enum Task {
     /// All of it, from disk.
     Read(Subject),
     /// A new coat by this recipe, of the asset that was read before, if it was.
-    Bake(Subject, Option<Arc<Model>>, Box<Recipe>),
+    Bake(Subject, Option<Arc<Asset>>, Box<Recipe>),
 }
 
 /// What comes of it.
@@ -80,7 +80,7 @@ pub struct Sketch {
     /// Of what.
     pub subject: Subject,
     /// It without a coat, where it was read.
-    pub bare: Option<Arc<Model>>,
+    pub bare: Option<Arc<Asset>>,
     /// By which recipe.
     pub recipe: Box<Recipe>,
     /// Which change it is of.
@@ -154,19 +154,14 @@ fn read(subject: &Subject, tell: &dyn Fn(News)) -> Result<Ready> {
     let metres_per_unit = units::scale(recipe.units, &recipe.preset, &asset, &chosen, sample)?.metres_per_unit;
     let bare = Arc::new(Model::new(asset, Coat { metres_per_unit, ..Coat::default() })?);
     tell(News::Bare(Arc::clone(&bare)));
-    Ok(Ready { read: true, ..baked(subject, Some(&bare), recipe, tell)? })
+    Ok(Ready { read: true, ..baked(subject, Some(&bare.asset), recipe, tell)? })
 }
 
-fn baked(subject: &Subject, bare: Option<&Model>, recipe: Recipe, tell: &dyn Fn(News)) -> Result<Ready> {
+fn baked(subject: &Subject, bare: Option<&Asset>, recipe: Recipe, tell: &dyn Fn(News)) -> Result<Ready> {
     let start = Instant::now();
     let mut told = |step| tell(News::Step(step));
-    let (asset, coat, baked) = seen(
-        &recipe,
-        (&subject.input, bare.map(|bare| &bare.asset)),
-        &subject.reading,
-        subject.cache.clone(),
-        &mut told,
-    )?;
+    let (asset, coat, baked) =
+        seen(&recipe, (&subject.input, bare), &subject.reading, subject.cache.clone(), &mut told)?;
     let model = Arc::new(Model::new(asset, coat)?);
     let notes = [baked.warnings, baked.notes].concat();
     let ms = start.elapsed().as_secs_f64() * 1e3;

@@ -6,11 +6,12 @@ use crate::data::subject::Subject;
 use crate::error::Result;
 use crate::viewer::stage::{self, Textures};
 use crate::viewer::subject::subject;
+use std::sync::Arc;
 
 /// An asset, what it wears, and what pictures of it need.
 pub struct Model {
     /// Skin, skeleton, animations.
-    pub asset: Asset,
+    pub asset: Arc<Asset>,
     /// What it wears; without primitives while it has none yet.
     pub coat: Coat,
     /// As camera and lights know it.
@@ -40,7 +41,7 @@ impl Model {
         let names = asset.animation_names().into_iter().enumerate();
         let animation = |(index, name)| Ok(Animation { name, seconds: asset.animation_seconds(index)? });
         let animations = names.map(animation).collect::<Result<_>>()?;
-        Ok(Self { subject: subject(&asset, &coat)?, asset, coat, textures, animations })
+        Ok(Self { subject: subject(&asset, &coat)?, asset: Arc::new(asset), coat, textures, animations })
     }
 
     /// Whether it wears anything.

@@ -5,7 +5,7 @@ use super::lighting::Source;
 use super::model::Model;
 use super::state::State;
 use crate::math::Vec3;
-use crate::runtime::{Blending, Combing, OUT_OF_LINE, Spring};
+use crate::runtime::{Blending, Combing, LENGTHS, OUT_OF_LINE, SLANTS_DEG, Spring};
 use crate::stage::background::Background;
 use crate::stage::rig::Rig;
 use crate::stage::tone::Tone;
@@ -148,8 +148,12 @@ fn animation(ui: &mut Ui, state: &mut State, model: &Model) {
 /// Length and slant of the coat as it is: the preset's own are baked anew.
 fn comb(ui: &mut Ui, state: &mut State, statistics: Option<&Statistics>) {
     let combing = &mut state.combing;
-    ui.add(Slider::new(&mut combing.length, 0.1..=4.0).text("length").logarithmic(true).fixed_decimals(2));
-    ui.add(Slider::new(&mut combing.slant_deg, -75.0..=75.0).text("slant").suffix("°").fixed_decimals(0));
+    ui.add(
+        Slider::new(&mut combing.length, LENGTHS[0]..=LENGTHS[1]).text("length").logarithmic(true).fixed_decimals(2),
+    );
+    ui.add(
+        Slider::new(&mut combing.slant_deg, SLANTS_DEG[0]..=SLANTS_DEG[1]).text("slant").suffix("°").fixed_decimals(0),
+    );
     if *combing != Combing::default() && ui.button("as baked").clicked() {
         *combing = Combing::default();
     }

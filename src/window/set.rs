@@ -5,7 +5,7 @@ use super::lighting::Source;
 use super::model::Model;
 use super::state::State;
 use crate::error::{Error, Result};
-use crate::runtime::{Blending, Spring};
+use crate::runtime::{Blending, LENGTHS, SLANTS_DEG, Spring};
 use crate::stage::camera::{Orbit, Viewpoint};
 use crate::stage::rig::Rig;
 use crate::viewer::parse_show;
@@ -16,6 +16,7 @@ use crate::viewer::parse_show;
 /// [`crate::error::Kind::Usage`] where there is none of that name, or it has no such value.
 pub fn set(state: &mut State, model: Option<&Model>, aspect: f64, name: &str, value: &str) -> Result<()> {
     let number = |low: f64, high: f64| number(name, value, [low, high]);
+    let within = |[low, high]: [f32; 2]| number(f64::from(low), f64::from(high)).map(|x| x as f32);
     let is_on = || on_or_off(name, value);
     match name {
         "exposure" => state.development.exposure_ev = number(-8.0, 8.0)? as f32,
@@ -48,8 +49,8 @@ pub fn set(state: &mut State, model: Option<&Model>, aspect: f64, name: &str, va
         }
         "wipe" => state.comparison.wipe = number(0.0, 1.0)? as f32,
         "hair" => state.comparison.hair = is_on()?,
-        "length" => state.combing.length = number(0.1, 4.0)? as f32,
-        "slant" => state.combing.slant_deg = number(-75.0, 75.0)? as f32,
+        "length" => state.combing.length = within(LENGTHS)?,
+        "slant" => state.combing.slant_deg = within(SLANTS_DEG)?,
         "sway" => state.spring = is_on()?.then(Spring::default),
         "wind" => state.wind.speed_m_per_s = number(0.0, 30.0)? as f32,
         "wind.gusts" => state.wind.gusts = number(0.0, 1.0)? as f32,
@@ -91,7 +92,9 @@ fn source(value: &str) -> Result<Source> {
 }
 
 fn number(name: &str, value: &str, [low, high]: [f64; 2]) -> Result<f64> {
-    let number = value.parse().ok().filter(|number| (low..=high).contains(number));
+    // As f32, as most values are: 0.1 is not less than 0.1.
+    let [low, high] = [low as f32, high as f32];
+    let number = value.parse().ok().filter(|number: &f64| (low..=high).contains(&(*number as f32)));
     number.ok_or_else(|| fault(name, value, &format!("a number from {low} to {high}")))
 }
 

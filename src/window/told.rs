@@ -1,6 +1,9 @@
 //! What the window tells of itself: how quickly it answers, and how long changes take to be seen.
 
+use super::model::Model;
+use crate::metrics::timing;
 use serde::Serialize;
+use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 
 /// How long input waited until the controls had taken note of it, drawing apart.
@@ -24,23 +27,33 @@ impl Answers {
     }
 }
 
-/// From a change of the preset to a coat of it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Took {
-    /// Until it was baked, ms.
+/// A coat of the last change of the preset: what it took to come.
+#[derive(Debug, Default, Serialize)]
+pub struct Coming {
+    /// From the change until it was baked, ms.
     pub baked_ms: Option<f64>,
-    /// Until it was seen, ms.
+    /// From the change until it was seen, ms.
     pub seen_ms: Option<f64>,
+    /// What the steps of its bake took.
+    steps: timing::Steps,
+    #[serde(skip)]
+    model: Weak<Model>,
 }
 
-impl Took {
-    /// Now it is baked.
-    pub fn baked(&mut self, began: Option<Instant>) {
-        self.baked_ms = began.map(|began| began.elapsed().as_secs_f64() * 1e3);
+impl Coming {
+    /// Takes note that it is baked.
+    pub fn baked(&mut self, began: Option<Instant>, model: &Arc<Model>, steps: timing::Steps) {
+        (self.baked_ms, self.steps, self.model) = (ms_since(began), steps, Arc::downgrade(model));
     }
 
-    /// Now it is seen, where that is the first time.
-    pub fn seen(&mut self, began: Option<Instant>) {
-        self.seen_ms = self.seen_ms.or(began.map(|began| began.elapsed().as_secs_f64() * 1e3));
+    /// Takes note of a picture of `model`, where it is the first of this coat.
+    pub fn seen(&mut self, began: Option<Instant>, model: &Arc<Model>) {
+        if std::ptr::eq(self.model.as_ptr(), Arc::as_ptr(model)) {
+            self.seen_ms = self.seen_ms.or(ms_since(began));
+        }
     }
+}
+
+fn ms_since(began: Option<Instant>) -> Option<f64> {
+    began.map(|began| began.elapsed().as_secs_f64() * 1e3)
 }

@@ -9,7 +9,7 @@ use crate::window::loading::{self, Ready, Sketch, Task};
 use crate::window::mailbox::Sender;
 use crate::window::model::Model;
 use crate::window::parameters::{self, Wanted};
-use crate::window::told::Took;
+use crate::window::told::Coming;
 use egui::Ui;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -34,12 +34,8 @@ pub(super) struct Baking {
     touched: Option<Instant>,
     /// The recipe whose final coat is ordered and not there yet.
     ordered: Option<Box<Recipe>>,
-    /// From the last change to its coarse coat and to its final one.
-    pub(super) took: [Took; 2],
-    /// These coats.
-    came: [Option<Arc<Model>>; 2],
-    /// What their steps took.
-    pub(super) steps: [timing::Steps; 2],
+    /// The last change's coarse coat and its final one.
+    pub(super) coming: [Coming; 2],
     /// When the last change was.
     began: Option<Instant>,
 }
@@ -48,16 +44,7 @@ impl Baking {
     pub(super) fn new(voice: Voice) -> Result<Self> {
         let told = move |change, ready: Result<Ready>| voice.say(Word::Sketched(change, Box::new(ready)));
         let sketches = loading::start_sketches(told)?;
-        Ok(Self {
-            sketches,
-            change: 0,
-            touched: None,
-            ordered: None,
-            took: [Took::default(); 2],
-            came: [None, None],
-            steps: Default::default(),
-            began: None,
-        })
+        Ok(Self { sketches, change: 0, touched: None, ordered: None, coming: Default::default(), began: None })
     }
 
     /// Counts changes of the preset.
@@ -80,24 +67,14 @@ impl Baking {
         let wanted = self.ordered.as_deref() == recipe && self.touched.is_none();
         if wanted {
             self.ordered = None;
-            self.came(1, model, steps);
+            self.coming[1].baked(self.began, model, steps);
         }
         wanted
     }
 
-    fn came(&mut self, which: usize, model: &Arc<Model>, steps: timing::Steps) {
-        self.steps[which] = steps;
-        self.took[which].baked(self.began);
-        self.came[which] = Some(Arc::clone(model));
-    }
-
     /// Takes note of a picture of `model`.
     pub(super) fn seen(&mut self, model: &Arc<Model>) {
-        for (took, came) in self.took.iter_mut().zip(&self.came) {
-            if came.as_ref().is_some_and(|came| Arc::ptr_eq(came, model)) {
-                took.seen(self.began);
-            }
-        }
+        self.coming.iter_mut().for_each(|coat| coat.seen(self.began, model));
     }
 }
 
@@ -121,7 +98,7 @@ impl App {
         let Some(edits) = &self.edits else { return };
         let mut wanted = parameters::wetness(ui, edits);
         egui::CollapsingHeader::new("Preset").default_open(false).show(ui, |ui| {
-            let [coarse, last] = self.baking.took.map(|took| took.seen_ms);
+            let [coarse, last] = self.baking.coming.each_ref().map(|coat| coat.seen_ms);
             if coarse.or(last).is_some() {
                 let [coarse, last] = [coarse, last].map(|ms| ms.map_or("…".to_owned(), |ms| format!("{ms:.0} ms")));
                 ui.weak(format!("from a change to the sight of its coarse coat {coarse}, of its final one {last}"));
@@ -205,7 +182,7 @@ impl App {
         let baking = &mut self.baking;
         baking.change += 1;
         (baking.touched, baking.began) = (Some(Instant::now()), Some(Instant::now()));
-        (baking.took, baking.came) = ([Took::default(); 2], [None, None]);
+        baking.coming = Default::default();
         let recipe = Box::new(coarse(edits.recipe()));
         baking.sketches.put(Sketch {
             subject: self.subject.clone(),
@@ -230,7 +207,7 @@ impl App {
         }
         match ready {
             Ok(ready) => {
-                self.baking.came(0, &ready.model, ready.steps);
+                self.baking.coming[0].baked(self.baking.began, &ready.model, ready.steps);
                 self.look_at(ready.model);
             }
             Err(error) => self.trouble = Some(error),
@@ -241,7 +218,7 @@ impl App {
     pub(super) fn bake_when_at_rest(&mut self) {
         let Some(touched) = self.baking.touched else { return };
         // The coarse coat is seen first, or both would share the processor and come late.
-        let sketched = self.baking.took[0].seen_ms.is_some();
+        let sketched = self.baking.coming[0].seen_ms.is_some();
         let rests = if sketched { RESTS } else { SKETCHED };
         match rests.checked_sub(touched.elapsed()) {
             Some(left) if !left.is_zero() => self.voice.context.request_repaint_after(left),

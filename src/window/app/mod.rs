@@ -29,6 +29,7 @@ use super::state::{Clock, Open, State};
 use super::told::Answers;
 use super::truth::{self, Truth};
 use super::watch::Watch;
+use crate::asset::Asset;
 use crate::bake::recipe::Choices;
 use crate::cache::Store;
 use crate::error::{Error, Result};
@@ -84,7 +85,7 @@ pub struct App {
     moment: Option<(String, f64)>,
     model: Option<Arc<Model>>,
     /// The asset as it was read last, without its coat; none until then, and where it wears one.
-    bare: Option<Arc<Model>>,
+    bare: Option<Arc<Asset>>,
     /// Whether the next model is another asset, to be framed anew.
     fresh: bool,
     edits: Option<Edits>,

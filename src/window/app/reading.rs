@@ -80,7 +80,7 @@ impl App {
         match news {
             News::Step(step) => self.step = Some(step),
             News::Bare(model) => {
-                self.bare = Some(Arc::clone(&model));
+                self.bare = Some(Arc::clone(&model.asset));
                 self.watch(model.asset.document.files.iter().cloned().collect());
                 // While a coat is baked anew, the one before it is shown.
                 if self.fresh || !self.model.as_ref().is_some_and(|model| model.furred()) {

@@ -1,7 +1,8 @@
 //! What the window tells of itself, as a file.
 
 use super::App;
-use crate::error::{Error, Result};
+use crate::asset::write;
+use crate::error::Result;
 use crate::window::panel;
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -19,18 +20,13 @@ impl App {
             None => BTreeMap::new(),
         };
         let comparison: Option<BTreeMap<_, _>> = self.comparison().map(|judged| judged.rows().into_iter().collect());
-        let [coarse, last] = [0, 1].map(|which| {
-            let (took, steps) = (&self.baking.took[which], &self.baking.steps[which]);
-            json!({ "baked_ms": took.baked_ms, "seen_ms": took.seen_ms, "steps": steps })
-        });
+        let [coarse, last] = &self.baking.coming;
         let told = json!({
             "answers": std::mem::take(&mut self.answers),
             "change": { "coarse": coarse, "final": last },
             "statistics": statistics,
             "comparison": comparison,
         });
-        let text = format!("{told:#}\n");
-        std::fs::write(path, text)
-            .map_err(|error| Error::input("the report cannot be written").with_file(path).with_found(error))
+        write::whole(path, format!("{told:#}\n").as_bytes(), &[])
     }
 }
