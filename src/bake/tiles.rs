@@ -94,7 +94,7 @@ fn baked(hair: &Hair, recipe: &TileRecipe, steps: &mut Steps<'_>) -> Tile {
     let grown = hair.grown(steps);
     let [guard, undercoat] = hair.fibres.each_ref().map(Fibre::colourless);
     // Where a level's slabs end hangs on all hair.
-    let ends = steps.key("tile-ends", &(guard, undercoat, hair.seed, recipe.shells));
+    let ends = steps.key("tile-ends", &(guard, undercoat, hair.seed, recipe.shells, recipe.draft));
     let gains = steps.key("tile-gains", &(guard, undercoat, hair.seed, recipe.shells, recipe.lean_deg, recipe.draft));
     let mut told = RaysTold { ends: steps.find(ends.as_ref()), gains: steps.find(gains.as_ref()) };
     let known = told.clone();
