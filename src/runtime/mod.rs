@@ -7,7 +7,6 @@
 mod bends;
 mod borders;
 mod casters;
-mod combing;
 mod detail;
 mod draw_list;
 pub mod gpu;
@@ -19,7 +18,6 @@ mod sight;
 pub use bends::{bends_per_m, outer_edge_m, outer_normals};
 pub use borders::away_from_borders;
 pub use casters::{Bounds, Casters};
-pub use combing::{Combing, LENGTHS, OUT_OF_LINE, SLANTS_DEG, step_texels};
 pub use detail::Detail;
 pub use draw_list::{Blending, CoatMesh, DrawList, Frame, MAX_LIGHTS, Picture, Show, SkinMesh};
 pub use motion::{Motion, Spring, Wind};

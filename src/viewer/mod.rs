@@ -3,6 +3,7 @@
 pub mod bald;
 pub mod channel;
 pub mod chart;
+mod combing;
 pub mod cost;
 mod notes;
 mod occluder;
@@ -14,6 +15,7 @@ pub mod subject;
 
 pub use channel::Channel;
 pub use chart::Chart;
+pub use combing::{Combing, LENGTHS, OUT_OF_LINE, SLANTS_DEG, step_texels};
 pub use shoot::Told;
 pub use shown::{CHANNELS, Shown, parse_show};
 
@@ -23,7 +25,7 @@ use crate::data::image::Image8;
 use crate::error::{Error, Result};
 use crate::gpu::Choice;
 use crate::metrics::timing::Report;
-use crate::runtime::{Blending, Combing, Picture};
+use crate::runtime::{Blending, Picture};
 use crate::stage::camera::{Orbit, Viewpoint};
 use crate::stage::file::Format;
 use crate::stage::{exr, options, png, tone};

@@ -5,9 +5,9 @@ use crate::data::camera::Camera;
 use crate::data::film::Film;
 use crate::data::image::Image8;
 use crate::math::Vec3;
-use crate::runtime::{Blending, Combing};
+use crate::runtime::Blending;
 use crate::stage::tone::{self, Development};
-use crate::viewer::Shown;
+use crate::viewer::{Combing, Shown};
 use rayon::prelude::*;
 
 /// A moment of an animation.

@@ -5,11 +5,11 @@ use super::lighting::Source;
 use super::model::Model;
 use super::state::State;
 use crate::math::Vec3;
-use crate::runtime::{Blending, Combing, LENGTHS, OUT_OF_LINE, SLANTS_DEG, Spring};
+use crate::runtime::{Blending, Spring};
 use crate::stage::background::Background;
 use crate::stage::rig::Rig;
 use crate::stage::tone::Tone;
-use crate::viewer::CHANNELS;
+use crate::viewer::{CHANNELS, Combing, LENGTHS, OUT_OF_LINE, SLANTS_DEG};
 use egui::{CollapsingHeader, ComboBox, Grid, Label, RichText, Slider, Ui};
 
 /// The window itself: colours and size of its writing.

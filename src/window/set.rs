@@ -5,10 +5,10 @@ use super::lighting::Source;
 use super::model::Model;
 use super::state::State;
 use crate::error::{Error, Result};
-use crate::runtime::{Blending, LENGTHS, SLANTS_DEG, Spring};
+use crate::runtime::{Blending, Spring};
 use crate::stage::camera::{Orbit, Viewpoint};
 use crate::stage::rig::Rig;
-use crate::viewer::parse_show;
+use crate::viewer::{LENGTHS, SLANTS_DEG, parse_show};
 
 /// Sets the control `name`.
 ///

@@ -5,9 +5,9 @@ use super::eye::Eye;
 use super::lighting::Lighting;
 use super::look::{Look, Moment};
 use super::model::{Animation, Model};
-use crate::runtime::{Blending, Combing, Spring, Wind};
+use crate::runtime::{Blending, Spring, Wind};
 use crate::stage::tone::Development;
-use crate::viewer::Shown;
+use crate::viewer::{Combing, Shown};
 
 /// Everything that controls change and pictures depend on.
 pub struct State {

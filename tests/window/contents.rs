@@ -4,9 +4,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use furrier::bake::recipe::Choices;
 use furrier::gpu::Choice;
-use furrier::runtime::{Blending, Combing, Show};
+use furrier::runtime::{Blending, Show};
 use furrier::stage::options::Options;
-use furrier::viewer::Shown;
+use furrier::viewer::{Combing, Shown};
 use furrier::window::{App, Begin, Wish, keys, loading, script::Script, sections};
 use std::time::{Duration, Instant};
 

@@ -2,9 +2,9 @@
 
 use crate::bake::recipe::Choices;
 use crate::gpu::Choice;
-use crate::runtime::{Blending, Combing};
+use crate::runtime::Blending;
 use crate::stage::options::Options;
-use crate::viewer::Shown;
+use crate::viewer::{Combing, Shown};
 use crate::window::loading::Subject;
 use crate::window::script::Script;
 use std::path::PathBuf;

@@ -3,7 +3,7 @@
 use super::{App, QUIET, Word};
 use crate::data::image::Image8;
 use crate::error::Result;
-use crate::runtime::Combing;
+use crate::viewer::Combing;
 use crate::window::canvas;
 use crate::window::comparison::{self, Judged, Mode};
 use crate::window::look::Look;

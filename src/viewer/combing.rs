@@ -1,16 +1,21 @@
 //! A coat made longer or laid down as a whole, after it was baked (Lengyel et al. 2001 §3). In: the offsets of a posed coat. Out: the same,
 //! stretched and turned. What is baked into the slabs stays as it is.
 
-use super::draw_list::{CoatMesh, DrawList};
+use crate::data::mesh::{Mesh, position_classes};
 use crate::error::{Error, Result};
+use crate::fur::groom::lean::Standing;
+use crate::fur::groom::unfold::unfold;
 use crate::math::Vec3;
+use crate::runtime::{CoatMesh, DrawList};
 
 /// Factors on length that there are.
 pub const LENGTHS: [f32; 2] = [0.1, 4.0];
 /// Slants that there are, degrees.
 pub const SLANTS_DEG: [f32; 2] = [-75.0, 75.0];
-/// Hair lies down to this angle from the normal at most, degrees: the skin is near then.
-const FLATTEST_DEG: f32 = 85.0;
+/// Hair lies down to this angle from the normal at most, degrees: as far as that of a bake does.
+const FLATTEST_DEG: f32 = 80.0;
+/// Share of the stack's height up to which hair must not cross: there it is dense. As in a bake, single guard hairs above may.
+const DENSE: f32 = 0.5;
 /// Share of its length along the skin from which on hair leans somewhere.
 const LEANS: f32 = 0.02;
 /// Texels from slab to slab beyond which a coat is seen to fall apart into its layers (`docs/steps/runtime.md`).
@@ -54,11 +59,15 @@ impl Combing {
         }
         let (mut before_m, mut after_m) = (0.0_f64, 0.0_f64);
         for fur in &mut scene.furs {
+            let heights_m = |fur: &CoatMesh<'_>| -> f64 {
+                fur.offsets_m.iter().zip(&fur.normals).map(|(o, n)| f64::from(o.dot(*n))).sum()
+            };
+            before_m += heights_m(fur);
             for (offset_m, &normal) in fur.offsets_m.iter_mut().zip(&fur.normals) {
-                before_m += f64::from(offset_m.dot(normal));
                 *offset_m = self.combed(*offset_m, normal);
-                after_m += f64::from(offset_m.dot(normal));
             }
+            give_way(fur);
+            after_m += heights_m(fur);
         }
         // Skin is shaded by how high hair stands over it; it has vertices of its own.
         let rise = if before_m > 0.0 { (after_m / before_m) as f32 } else { 1.0 };
@@ -78,6 +87,27 @@ impl Combing {
         let lean_rad = (lean_rad + self.slant_deg.to_radians()).clamp(-FLATTEST_DEG.to_radians(), most_rad);
         let (sin, cos) = libm::sincosf(lean_rad);
         (normal * cos + towards * sin) * (length_m * self.length)
+    }
+}
+
+/// Combs hair apart that would now run into its neighbours in creases, or under the skin beside it, as a bake does.
+fn give_way(fur: &mut CoatMesh<'_>) {
+    let mesh = Mesh {
+        positions_m: fur.positions_m.clone(),
+        normals: fur.normals.clone(),
+        triangles: fur.triangles.to_vec(),
+        position_class: position_classes(&fur.positions_m, 0.0),
+        ..Mesh::default()
+    };
+    let standing = Standing::new(&mesh);
+    let raised = |(v, offset_m): (usize, &Vec3)| {
+        standing.raised(v, mesh.position_class[v] as usize, offset_m.try_normalize().unwrap_or(fur.normals[v]))
+    };
+    let mut lean: Vec<Vec3> = fur.offsets_m.iter().enumerate().map(raised).collect();
+    let mut length_m: Vec<f32> = fur.offsets_m.iter().map(|offset_m| offset_m.length()).collect();
+    unfold(&mesh, &standing, DENSE, &mut lean, &mut length_m);
+    for (offset_m, (lean, length_m)) in fur.offsets_m.iter_mut().zip(lean.into_iter().zip(length_m)) {
+        *offset_m = lean * length_m;
     }
 }
 
